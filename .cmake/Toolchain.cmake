@@ -1,0 +1,36 @@
+# How every file of Tenon is compiled.
+#
+# Release is -O2 with line numbers, and keeps assertions: an executor whose invariant is broken must
+# stop (the drives then stop by themselves on the lost heartbeat), not carry on. So what is tested
+# is what ships. Dev adds the standard library's own checks.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1")
+set(CMAKE_CXX_FLAGS_DEV "-O2 -g1 -D_GLIBCXX_ASSERTIONS")
+set(CMAKE_CXX_FLAGS_SANITIZE "-O1 -g1 -D_GLIBCXX_ASSERTIONS -fno-omit-frame-pointer")
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Dev or Sanitize" FORCE)
+endif()
+
+# Contracting a*b+c into one rounding would make a result depend on the machine that compiled it.
+add_compile_options(-ffp-contract=off)
+add_compile_options(-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wswitch-enum)
+if(TENON_WERROR)
+  add_compile_options(-Werror)
+endif()
+
+if(TENON_SANITIZERS)
+  add_compile_options(-fsanitize=${TENON_SANITIZERS} -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${TENON_SANITIZERS})
+endif()
+
+find_program(CCACHE ccache)
+mark_as_advanced(CCACHE)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)

@@ -1,0 +1,111 @@
+#include "executor/cycle_runner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "executor/monotonic_clock.h"
+
+namespace tenon::executor {
+namespace {
+
+// Periods from one SYNC to the next beyond which the drives have stopped for want of a setpoint.
+constexpr double kLateSync = 1.25;
+
+std::size_t cycles_in(double duration_s, double cycle_s) {
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(duration_s / cycle_s)));
+}
+
+}  // namespace
+
+CycleRunner::CycleRunner(Arm& arm, Controller& controller, CycleSink* sink,
+                         const Parameters& parameters)
+    : arm_(arm),
+      controller_(controller),
+      sink_(sink),
+      parameters_(parameters),
+      cycle_ns_(std::int64_t{1000} * controller.cell().robot.cycle_us),
+      bucket_(parameters.late),
+      black_box_(cycles_in(parameters.black_box_s, controller.cycle_s())) {}
+
+void CycleRunner::begin(std::int64_t now_ns) noexcept {
+  feedback_.joints_fresh = 0;
+  feedback_.wrench_fresh = false;
+  arm_.start_cycle(now_ns);
+}
+
+bool CycleRunner::finish(std::int64_t now_ns) noexcept {
+  if (!arm_.receive(now_ns, feedback_)) miss_answers();
+  decide(now_ns);
+  publish(0, 0);
+  return !controller_.finished();
+}
+
+void CycleRunner::miss_answers() noexcept {
+  ++statistics_.incomplete_cycles;
+  controller_.report_late_sync();
+}
+
+void CycleRunner::decide(std::int64_t now_ns) noexcept {
+  feedback_.state = arm_.state();
+  feedback_.fault = arm_.fault();
+  const Controller::Command command = controller_.cycle(now_ns, feedback_);
+  arm_.command(now_ns, command.request, command.position);
+  ++statistics_.cycles;
+}
+
+void CycleRunner::publish(std::int64_t wakeup_late_ns, std::int64_t compute_ns) noexcept {
+  CycleRecord record = controller_.record();
+  record.wakeup_late_ns = wakeup_late_ns;
+  record.compute_ns = compute_ns;
+  record.late_cycles = static_cast<std::uint32_t>(statistics_.late_cycles);
+  black_box_.record(record);
+  if (sink_ != nullptr) sink_->record(record);
+}
+
+void CycleRunner::run(const std::atomic<bool>& stop) noexcept {
+  const auto deadline_ns =
+      static_cast<std::int64_t>(parameters_.feedback_deadline * static_cast<double>(cycle_ns_));
+  const auto late_sync_ns = static_cast<std::int64_t>(kLateSync * static_cast<double>(cycle_ns_));
+  std::int64_t due_ns = MonotonicClock::now_ns() + cycle_ns_;
+  std::int64_t last_awake_ns = due_ns;
+  while (!controller_.finished()) {
+    MonotonicClock::wait_until(due_ns);
+    const std::int64_t awake_ns = MonotonicClock::now_ns();
+    if (stop.load(std::memory_order_relaxed)) controller_.request_stop();
+    if (awake_ns - last_awake_ns > late_sync_ns) controller_.report_late_sync();
+    last_awake_ns = awake_ns;
+
+    begin(awake_ns);
+    std::int64_t now_ns = awake_ns;
+    bool complete = arm_.receive(now_ns, feedback_);
+    while (!complete && now_ns < awake_ns + deadline_ns) {
+      arm_.wait(awake_ns + deadline_ns - now_ns);
+      now_ns = MonotonicClock::now_ns();
+      complete = arm_.receive(now_ns, feedback_);
+    }
+    if (!complete) miss_answers();
+
+    decide(now_ns);
+    const std::int64_t done_ns = MonotonicClock::now_ns();
+    statistics_.wakeup.add(awake_ns - due_ns);
+    statistics_.compute.add(done_ns - now_ns);
+    publish(awake_ns - due_ns, done_ns - now_ns);
+    due_ns = next_due(due_ns, MonotonicClock::now_ns());
+  }
+}
+
+// A late cycle is counted and skips whole periods, so that the phase stays.
+std::int64_t CycleRunner::next_due(std::int64_t due_ns, std::int64_t now_ns) noexcept {
+  due_ns += cycle_ns_;
+  if (now_ns < due_ns) {
+    bucket_.good();
+    return due_ns;
+  }
+  const std::int64_t skipped = (now_ns - due_ns) / cycle_ns_ + 1;
+  statistics_.late_cycles += static_cast<std::uint64_t>(skipped);
+  bucket_.late(skipped);
+  if (bucket_.full()) controller_.report_overruns(statistics_.late_cycles);
+  return due_ns + skipped * cycle_ns_;
+}
+
+}  // namespace tenon::executor

@@ -1,0 +1,83 @@
+#pragma once
+// The loop around a controller: opens a cycle on the arm (SYNC), takes feedback until it is
+// complete or late, lets the controller decide, and sends the setpoints. run() does so on the
+// clock, begin() and finish() without one, for virtual time. Real-time after construction, one
+// thread; refers to arm, controller and sink, which must outlive it.
+
+#include <atomic>
+#include <cstdint>
+
+#include "executor/black_box.h"
+#include "executor/controller.h"
+#include "executor/cycle_record.h"
+#include "executor/histogram.h"
+#include "executor/leaky_bucket.h"
+#include "shared/ports/arm.h"
+
+namespace tenon::executor {
+
+/// Where cycle records go. Real-time.
+class CycleSink {
+ public:
+  CycleSink() = default;
+  CycleSink(const CycleSink&) = delete;
+  CycleSink& operator=(const CycleSink&) = delete;
+  virtual ~CycleSink() = default;
+  virtual void record(const CycleRecord& record) noexcept = 0;
+};
+
+class CycleRunner {
+ public:
+  struct Parameters {
+    double feedback_deadline = 0.7;  ///< share of the cycle after which the controller goes ahead
+    double black_box_s = 1.0;
+    LeakyBucket::Parameters late;
+  };
+
+  struct Statistics {
+    std::uint64_t cycles = 0;
+    std::uint64_t late_cycles = 0;        ///< periods that had to be skipped
+    std::uint64_t incomplete_cycles = 0;  ///< feedback still missing at the deadline
+    Histogram wakeup;                     ///< from the due time to being awake
+    Histogram compute;                    ///< from the last feedback to the last setpoint
+  };
+
+  /// @param sink may be null
+  CycleRunner(Arm& arm, Controller& controller, CycleSink* sink, const Parameters& parameters);
+  CycleRunner(const CycleRunner&) = delete;
+  CycleRunner& operator=(const CycleRunner&) = delete;
+
+  /// Without a clock: begin(), then let the other end of the bus answer, then finish().
+  void begin(std::int64_t now_ns) noexcept;
+  /// False once the run is over.
+  bool finish(std::int64_t now_ns) noexcept;
+  /// Both, for an arm that answers by itself.
+  bool step(std::int64_t now_ns) noexcept {
+    begin(now_ns);
+    return finish(now_ns);
+  }
+
+  /// Runs to the end on the clock. @param stop set by anyone to end the run in good order
+  void run(const std::atomic<bool>& stop) noexcept;
+
+  [[nodiscard]] const Statistics& statistics() const noexcept { return statistics_; }
+  [[nodiscard]] const BlackBox& black_box() const noexcept { return black_box_; }
+
+ private:
+  void miss_answers() noexcept;
+  void decide(std::int64_t now_ns) noexcept;
+  void publish(std::int64_t wakeup_late_ns, std::int64_t compute_ns) noexcept;
+  [[nodiscard]] std::int64_t next_due(std::int64_t due_ns, std::int64_t now_ns) noexcept;
+
+  Arm& arm_;
+  Controller& controller_;
+  CycleSink* sink_;
+  Parameters parameters_;
+  std::int64_t cycle_ns_;
+  ArmFeedback feedback_;
+  LeakyBucket bucket_;
+  BlackBox black_box_;
+  Statistics statistics_;
+};
+
+}  // namespace tenon::executor

@@ -1,0 +1,211 @@
+#include "executor/ending.h"
+
+#include <array>
+#include <cstdio>
+
+#include "shared/base/text.h"
+
+namespace tenon::executor {
+namespace {
+
+const char* wrench_unit(int axis) { return axis < 3 ? "N" : "Nm"; }
+
+std::string joint_name(const Cell& cell, int joint) {
+  const auto i = static_cast<std::size_t>(joint);
+  return joint >= 0 && i < cell.robot.joints.size() ? cell.robot.joints[i].name : "?";
+}
+
+const char* joint_unit(const Cell& cell, int joint) {
+  const auto i = static_cast<std::size_t>(joint);
+  const bool linear = joint >= 0 && i < cell.robot.joints.size() &&
+                      cell.robot.joints[i].kind == Joint::Kind::kPrismatic;
+  return linear ? "m" : "rad";
+}
+
+const char* to_string(ArmState state) {
+  switch (state) {
+    case ArmState::kUnconfigured:
+      return "unconfigured";
+    case ArmState::kDisabled:
+      return "disabled";
+    case ArmState::kEnabling:
+      return "enabling";
+    case ArmState::kEnabled:
+      return "enabled";
+    case ArmState::kStopping:
+      return "stopping";
+    case ArmState::kFault:
+      return "fault";
+  }
+  return "?";
+}
+
+}  // namespace
+
+const char* to_string(EndReason reason) {
+  switch (reason) {
+    case EndReason::kNone:
+      return "none";
+    case EndReason::kPlanDone:
+      return "plan_done";
+    case EndReason::kPlanFailed:
+      return "plan_failed";
+    case EndReason::kStopRequested:
+      return "stop_requested";
+    case EndReason::kNotAtStart:
+      return "not_at_start";
+    case EndReason::kTareUnsteady:
+      return "tare_unsteady";
+    case EndReason::kTareMoving:
+      return "tare_moving";
+    case EndReason::kContactOnApproach:
+      return "contact_on_approach";
+    case EndReason::kUnreachable:
+      return "unreachable";
+    case EndReason::kJointLimit:
+      return "joint_limit";
+    case EndReason::kJointSpeed:
+      return "joint_speed";
+    case EndReason::kForceFault:
+      return "force_fault";
+    case EndReason::kTorqueFault:
+      return "torque_fault";
+    case EndReason::kSensorSaturated:
+      return "sensor_saturated";
+    case EndReason::kSensorNotFinite:
+      return "sensor_not_finite";
+    case EndReason::kArmFault:
+      return "arm_fault";
+    case EndReason::kArmNotEnabled:
+      return "arm_not_enabled";
+    case EndReason::kEnableTimeout:
+      return "enable_timeout";
+    case EndReason::kFeedbackMissing:
+      return "feedback_missing";
+    case EndReason::kWrenchMissing:
+      return "wrench_missing";
+    case EndReason::kOverruns:
+      return "overruns";
+  }
+  return "?";
+}
+
+bool wants_quick_stop(EndReason reason) {
+  switch (reason) {
+    case EndReason::kNone:
+    case EndReason::kPlanDone:
+    case EndReason::kPlanFailed:
+    case EndReason::kStopRequested:
+    case EndReason::kNotAtStart:
+    case EndReason::kTareUnsteady:
+    case EndReason::kTareMoving:
+    case EndReason::kContactOnApproach:
+    case EndReason::kEnableTimeout:
+      return false;
+    case EndReason::kUnreachable:
+    case EndReason::kJointLimit:
+    case EndReason::kJointSpeed:
+    case EndReason::kForceFault:
+    case EndReason::kTorqueFault:
+    case EndReason::kSensorSaturated:
+    case EndReason::kSensorNotFinite:
+    case EndReason::kArmFault:
+    case EndReason::kArmNotEnabled:
+    case EndReason::kFeedbackMissing:
+    case EndReason::kWrenchMissing:
+    case EndReason::kOverruns:
+      return true;
+  }
+  return true;
+}
+
+std::string describe(const Transition& transition) {
+  const auto bit = static_cast<std::uint16_t>(transition.index < 0 ? 0 : 1U << transition.index);
+  switch (transition.deviation) {
+    case Deviation::kNone:
+      return "as planned";
+    case Deviation::kUnexpectedOutcome:
+      return "the plan has no way on from this outcome";
+    case Deviation::kTravelOutside:
+      return format("travelled along %s outside what validation saw", axis_name(transition.index));
+    case Deviation::kContactMissing:
+      return "contact " + tenon::to_string(ContactSignature{bit}) +
+             " is missing, validation always had it";
+    case Deviation::kContactUnforeseen:
+      return "contact " + tenon::to_string(ContactSignature{bit}) + " was never seen in validation";
+  }
+  return "?";
+}
+
+std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
+                     const std::string& arm_fault_text) {
+  switch (e.reason) {
+    case EndReason::kNone:
+      return "still running";
+    case EndReason::kPlanDone:
+      return "plan '" + plan.task_name + "' done";
+    case EndReason::kPlanFailed:
+      return format("step %d: ", e.index) + describe(e.transition);
+    case EndReason::kStopRequested:
+      return "stopped on request";
+    case EndReason::kNotAtStart:
+      return format(
+          "the tool is %.4g %s from the plan's start '%s', must be within %.4g: move it there or "
+          "use "
+          "--go-to-start",
+          e.value, e.index < 3 ? "m" : "rad", plan.start_name.c_str(), e.bound);
+    case EndReason::kTareUnsteady:
+      return format(
+          "sensor not steady while taring: standard deviation of %s is %.3g %s, at most "
+          "%.3g",
+          axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
+    case EndReason::kTareMoving:
+      return "joint " + joint_name(cell, e.index) +
+             format(" moved by %.3g %s while taring, at most %.3g", e.value,
+                    joint_unit(cell, e.index), e.bound);
+    case EndReason::kContactOnApproach:
+      return format("touched something on the way to the start: %s reads %.3g %s, at most %.3g",
+                    axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
+    case EndReason::kUnreachable:
+      return format("the commanded tool pose is out of the robot's reach by %.3g m or rad",
+                    e.value);
+    case EndReason::kJointLimit:
+      return "joint " + joint_name(cell, e.index) +
+             format(" would go to %.6g %s, beyond its limit %.6g", e.value,
+                    joint_unit(cell, e.index), e.bound);
+    case EndReason::kJointSpeed:
+      return "joint " + joint_name(cell, e.index) +
+             format(" would move at %.4g %s/s, at most %.4g", e.value, joint_unit(cell, e.index),
+                    e.bound);
+    case EndReason::kForceFault:
+      return format("external force %.4g N above force_fault_N = %.4g", e.value, e.bound);
+    case EndReason::kTorqueFault:
+      return format("external torque %.4g Nm above torque_fault_Nm = %.4g", e.value, e.bound);
+    case EndReason::kSensorSaturated:
+      return format("sensor axis %s reads %.4g %s, its range ends at %.4g", axis_name(e.index),
+                    e.value, wrench_unit(e.index), e.bound);
+    case EndReason::kSensorNotFinite:
+      return "the sensor's reading is not a number";
+    case EndReason::kArmFault:
+      if (!arm_fault_text.empty()) return "arm: " + arm_fault_text;
+      return format("arm: fault kind %d, node %d, object %06x, code %x",
+                    static_cast<int>(e.arm_fault.kind), static_cast<int>(e.arm_fault.node),
+                    static_cast<unsigned>(e.arm_fault.object),
+                    static_cast<unsigned>(e.arm_fault.code));
+    case EndReason::kArmNotEnabled:
+      return format("the arm left the enabled state unasked: %s",
+                    to_string(static_cast<ArmState>(e.index)));
+    case EndReason::kEnableTimeout:
+      return format("the arm was not enabled within %.3g s", e.value);
+    case EndReason::kFeedbackMissing:
+      return "joint " + joint_name(cell, e.index) +
+             format(" did not answer for %.0f cycles in a row, at most %.0f", e.value, e.bound);
+    case EndReason::kWrenchMissing:
+      return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);
+    case EndReason::kOverruns:
+      return format("the control loop cannot keep its period: %.0f late cycles", e.value);
+  }
+  return "?";
+}
+
+}  // namespace tenon::executor

@@ -1,0 +1,50 @@
+#pragma once
+// Where the held part accelerates, guessed from what was commanded: the command reaches the arm
+// through its response lag, and the sensor's sample is some cycles old. The one place to change for
+// an arm with better knowledge of itself. Real-time, one thread.
+
+#include <array>
+#include <cstddef>
+
+#include "shared/math/pose.h"
+
+namespace tenon::executor {
+
+class PayloadMotion {
+ public:
+  /// @param delay_cycles age of a measurement, 0..kDelayMax  @param lag_s first-order, >= 0
+  PayloadMotion(double cycle_s, double lag_s, int delay_cycles)
+      : cycle_s_(cycle_s),
+        blend_(cycle_s / (cycle_s + lag_s)),
+        delay_(static_cast<std::size_t>(delay_cycles)) {}
+
+  static constexpr int kDelayMax = 15;
+
+  /// Once a cycle: velocity commanded to the tool, m/s and rad/s, any fixed axes.
+  void command(const Vector6& velocity) {
+    commanded_[next_ % commanded_.size()] = velocity;
+    const Vector6& arrived = commanded_[(next_ + commanded_.size() - delay_) % commanded_.size()];
+    ++next_;
+    const Vector6 change = blend_ * (arrived - velocity_);
+    velocity_ += change;
+    acceleration_ = change / cycle_s_;
+  }
+
+  /// m/s^2 and rad/s^2, at the time of the sample that arrives next.
+  [[nodiscard]] const Vector6& acceleration() const { return acceleration_; }
+
+ private:
+  double cycle_s_;
+  double blend_;
+  std::size_t delay_;
+  std::size_t next_ = 0;
+  std::array<Vector6, kDelayMax + 1> commanded_ = [] {
+    std::array<Vector6, kDelayMax + 1> zero;
+    zero.fill(Vector6::Zero());
+    return zero;
+  }();
+  Vector6 velocity_ = Vector6::Zero();
+  Vector6 acceleration_ = Vector6::Zero();
+};
+
+}  // namespace tenon::executor

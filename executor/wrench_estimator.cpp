@@ -1,0 +1,66 @@
+#include "executor/wrench_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tenon::executor {
+namespace {
+
+constexpr double kGravity_mps2 = 9.80665;
+// A reading at this share of the range may have been cut off.
+constexpr double kSaturation = 0.999;
+
+}  // namespace
+
+WrenchEstimator::WrenchEstimator(const Cell& cell)
+    : R_TB_(cell.X_BT.orientation.conjugate()),
+      X_SP_(compose(inverse(cell.X_FS), cell.X_FP)),
+      mass_kg_(cell.payload_mass_kg),
+      com_S_m_(cell.payload_com_m),
+      force_range_N_(cell.robot.sensor.force_range_N),
+      torque_range_Nm_(cell.robot.sensor.torque_range_Nm),
+      motion_(1e-6 * cell.robot.cycle_us, cell.robot.response_lag_s,
+              std::clamp(cell.robot.measurement_delay_cycles, 0, PayloadMotion::kDelayMax)) {}
+
+Eigen::Quaterniond WrenchEstimator::R_TS(const Pose& X_TP) const {
+  return X_TP.orientation * X_SP_.orientation.conjugate();
+}
+
+Vector6 WrenchEstimator::payload_wrench(const Vector3& specific_force_mps2) const {
+  const Vector3 force_N = mass_kg_ * specific_force_mps2;
+  Vector6 wrench;
+  wrench << force_N, com_S_m_.cross(force_N);
+  return wrench;
+}
+
+void WrenchEstimator::tare(const Vector6& mean_raw, const Pose& X_TP) {
+  const Vector3 down_T = R_TB_ * Vector3(0.0, 0.0, -kGravity_mps2);
+  bias_ = mean_raw - payload_wrench(R_TS(X_TP).conjugate() * down_T);
+  external_.setZero();
+}
+
+WrenchEstimator::Status WrenchEstimator::update(const Vector6& raw, const Pose& X_TP) {
+  if (!raw.allFinite()) return Status::kNotFinite;
+  for (int axis = 0; axis < 6; ++axis) {
+    const double range = axis < 3 ? force_range_N_ : torque_range_Nm_;
+    if (range <= 0.0 || std::abs(raw[axis]) < kSaturation * range) continue;
+    axis_ = axis;
+    return Status::kSaturated;
+  }
+
+  const Eigen::Quaterniond rotation = R_TS(X_TP);
+  const Vector3 to_com_T = rotation * (com_S_m_ - X_SP_.position_m);
+  const Vector6& a = motion_.acceleration();
+  const Vector3 com_acceleration = a.head<3>() + Vector3(a.tail<3>()).cross(to_com_T);
+  const Vector3 down_T = R_TB_ * Vector3(0.0, 0.0, -kGravity_mps2);
+  const Vector6 contact =
+      raw - bias_ - payload_wrench(rotation.conjugate() * (down_T - com_acceleration));
+
+  // The same wrench about the tool tip instead of the sensor's origin.
+  const Vector3 force_N = contact.head<3>();
+  const Vector3 torque_Nm = contact.tail<3>() - X_SP_.position_m.cross(force_N);
+  external_ << rotation * force_N, rotation * torque_Nm;
+  return Status::kGood;
+}
+
+}  // namespace tenon::executor

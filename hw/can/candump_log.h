@@ -1,0 +1,37 @@
+#pragma once
+// Writes frames in candump's log format, which canplayer, log2asc and Wireshark read:
+//
+//   (1.500000) can0 201#0F000102        11 bit      (1.500000) can0 00012345#0102   29 bit
+//   (1.500000) can0 201#R6              remote, 6 bytes asked for
+//
+// Not real-time (files, strings): belongs to the thread that empties the ring.
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "hw/can/recording_bus.h"
+#include "shared/ports/can_bus.h"
+
+namespace tenon::hw {
+
+/// One line without its end. Times are cut to microseconds.
+[[nodiscard]] std::string candump_line(const ReceivedFrame& record, const std::string& interface);
+
+class CandumpLog {
+ public:
+  /// Throws InputError where the file cannot be written.
+  explicit CandumpLog(const std::filesystem::path& file, std::string interface = "can0");
+
+  /// Writes everything that the ring holds and hands it to the system.
+  void drain(CanRecordRing& ring);
+
+  /// False once a write has failed (disk full).
+  [[nodiscard]] bool good() const { return stream_.good(); }
+
+ private:
+  std::ofstream stream_;
+  std::string interface_;
+};
+
+}  // namespace tenon::hw

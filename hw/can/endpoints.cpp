@@ -1,0 +1,98 @@
+#include "hw/can/endpoints.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <memory>
+
+#include "shared/base/error.h"
+
+namespace tenon::hw {
+namespace {
+
+using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
+
+std::string name_of(const std::string& host, std::uint16_t port) {
+  return host + ":" + std::to_string(port);
+}
+
+Addresses resolve(const std::string& host, std::uint16_t port, int flags) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = flags | AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  const int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
+  if (error != 0) {
+    throw InputError("CAN bus " + name_of(host, port) + ": " + ::gai_strerror(error) +
+                     "; give an address such as 127.0.0.1:29536");
+  }
+  return {found, &::freeaddrinfo};
+}
+
+void set_non_blocking(int descriptor) {
+  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
+}
+
+}  // namespace
+
+int connect_tcp(const std::string& host, std::uint16_t port) {
+  const Addresses addresses = resolve(host, port, 0);
+  const int descriptor = ::socket(addresses->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0 || ::connect(descriptor, addresses->ai_addr, addresses->ai_addrlen) != 0) {
+    const std::string reason = std::strerror(errno);
+    if (descriptor >= 0) ::close(descriptor);
+    throw InputError("CAN bus slcan://" + name_of(host, port) + ": cannot connect: " + reason +
+                     "; start the other end first (tenon-sim --can slcan-listen://" +
+                     name_of(host, port) + ")");
+  }
+  const int on = 1;
+  ::setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  set_non_blocking(descriptor);
+  return descriptor;
+}
+
+int listen_tcp(const std::string& host, std::uint16_t port) {
+  const Addresses addresses = resolve(host, port, AI_PASSIVE);
+  const int descriptor =
+      ::socket(addresses->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  const int on = 1;
+  if (descriptor < 0 || ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on)) != 0 ||
+      ::bind(descriptor, addresses->ai_addr, addresses->ai_addrlen) != 0 ||
+      ::listen(descriptor, 4) != 0) {
+    const std::string reason = std::strerror(errno);
+    if (descriptor >= 0) ::close(descriptor);
+    throw InputError("CAN bus slcan-listen://" + name_of(host, port) +
+                     ": cannot listen: " + reason + "; take another port (0 takes a free one)");
+  }
+  return descriptor;
+}
+
+int open_serial(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) {
+    throw InputError("CAN bus slcan:" + path + ": cannot open: " + std::strerror(errno) +
+                     "; check that the adapter is plugged in and that you may use it (group "
+                     "dialout)");
+  }
+  termios settings{};
+  if (::tcgetattr(descriptor, &settings) != 0) {
+    ::close(descriptor);
+    throw InputError("CAN bus slcan:" + path + ": is no serial device; give a tty or pty");
+  }
+  ::cfmakeraw(&settings);
+  settings.c_cflag |= CLOCAL | CREAD;
+  settings.c_cc[VMIN] = 1;
+  settings.c_cc[VTIME] = 0;
+  ::cfsetspeed(&settings, B3000000);  // USB adapters ignore it
+  ::tcsetattr(descriptor, TCSANOW, &settings);
+  return descriptor;
+}
+
+}  // namespace tenon::hw

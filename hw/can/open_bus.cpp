@@ -1,0 +1,72 @@
+#include "hw/can/open_bus.h"
+
+#include <charconv>
+#include <string_view>
+
+#include "hw/can/endpoints.h"
+#include "hw/can/slcan_client.h"
+#include "hw/can/slcan_server.h"
+#include "hw/can/socketcan_bus.h"
+#include "shared/base/error.h"
+
+namespace tenon::hw {
+namespace {
+
+struct Authority {
+  std::string host;
+  std::uint16_t port = 0;
+};
+
+/// The rest of `uri` where it starts with `prefix`.
+bool take_prefix(std::string_view& uri, std::string_view prefix) {
+  if (!uri.starts_with(prefix)) return false;
+  uri.remove_prefix(prefix.size());
+  return true;
+}
+
+Authority authority_of(const std::string& uri, std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  Authority authority;
+  if (colon != std::string_view::npos && colon > 0) {
+    authority.host = text.substr(0, colon);
+    const std::string_view port = text.substr(colon + 1);
+    const auto [end, error] =
+        std::from_chars(port.data(), port.data() + port.size(), authority.port);
+    if (error == std::errc() && end == port.data() + port.size()) {
+      return authority;
+    }
+  }
+  throw InputError("CAN bus '" + uri +
+                   "': HOST:PORT expected after '//', with a port of 0..65535, such as "
+                   "127.0.0.1:29536");
+}
+
+}  // namespace
+
+std::unique_ptr<CanBus> open_bus(const std::string& uri, std::uint32_t bitrate_bps) {
+  std::string_view rest = uri;
+  if (take_prefix(rest, "socketcan:")) {
+    return std::make_unique<SocketcanBus>(std::string(rest));
+  }
+  if (take_prefix(rest, "slcan-listen://")) {
+    const Authority authority = authority_of(uri, rest);
+    return std::make_unique<SlcanServer>(listen_tcp(authority.host, authority.port));
+  }
+  if (take_prefix(rest, "slcan://")) {
+    const Authority authority = authority_of(uri, rest);
+    return std::make_unique<SlcanClient>(connect_tcp(authority.host, authority.port), bitrate_bps);
+  }
+  if (take_prefix(rest, "slcan:") && rest.starts_with('/')) {
+    return std::make_unique<SlcanClient>(open_serial(std::string(rest)), bitrate_bps);
+  }
+  throw InputError("CAN bus '" + uri +
+                   "': not understood; use socketcan:INTERFACE, slcan:/dev/TTY, "
+                   "slcan://HOST:PORT or slcan-listen://HOST:PORT");
+}
+
+std::uint16_t listening_port(const CanBus& bus) {
+  const auto* server = dynamic_cast<const SlcanServer*>(&bus);
+  return server != nullptr ? server->port() : std::uint16_t{0};
+}
+
+}  // namespace tenon::hw

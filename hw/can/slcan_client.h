@@ -1,0 +1,33 @@
+#pragma once
+// A CAN bus behind an slcan adapter: a serial device or pty, or a TCP connection (the virtual arm).
+//
+// What send() takes leaves at the next receive() or wait(), so that the frames of one cycle cost
+// one system call; wait(0) is a flush. Neither blocks: where the other end reads too slowly, frames
+// are dropped and reported as kQueueFull; a closed connection is kDown and status().up = false, for
+// good. One thread. Owns the descriptor.
+
+#include <cstdint>
+
+#include "hw/can/slcan_stream.h"
+#include "shared/ports/can_bus.h"
+
+namespace tenon::hw {
+
+class SlcanClient : public CanBus {
+ public:
+  /// Opens the channel: C, S by bit rate, O. Throws InputError where slcan has no such bit rate.
+  /// @param descriptor open and non-blocking, taken over (see hw/can/endpoints.h)
+  SlcanClient(int descriptor, std::uint32_t bitrate_bps);
+  ~SlcanClient() override;
+
+  [[nodiscard]] SendResult send(const CanFrame& frame) noexcept override;
+  [[nodiscard]] bool receive(ReceivedFrame& received) noexcept override;
+  void wait(std::int64_t at_most_ns) noexcept override;
+  [[nodiscard]] CanBusStatus status() const noexcept override;
+
+ private:
+  SlcanStream stream_;
+  CanBusStatus status_;
+};
+
+}  // namespace tenon::hw

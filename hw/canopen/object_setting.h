@@ -1,0 +1,34 @@
+#pragma once
+// One line of a node's configuration: what an object entry has to be.
+
+#include <cstdint>
+
+namespace tenon::hw::canopen {
+
+struct ObjectSetting {
+  enum class Action : std::uint8_t {
+    kWrite,          ///< write it, read it back and compare
+    kWriteIfExists,  ///< the same, and a node without the object is fine too
+    kExpect,         ///< read and compare
+    kAwait,          ///< read and compare until it is so, for a bounded time
+    kRecord,         ///< read it where it exists, whatever it holds
+  };
+  Action action = Action::kWrite;
+  std::uint16_t index = 0;
+  std::uint8_t sub = 0;
+  std::uint8_t size_bytes = 4;  ///< 1, 2 or 4
+  std::uint32_t value = 0;
+  std::uint32_t compare_mask = 0xFFFFFFFF;  ///< bits that have to agree
+
+  /// index << 8 | sub, as ArmFault carries it.
+  [[nodiscard]] constexpr std::uint32_t object() const {
+    return static_cast<std::uint32_t>(index) << 8 | sub;
+  }
+  [[nodiscard]] constexpr bool matches(std::uint32_t found) const {
+    const std::uint32_t size_mask = size_bytes >= 4 ? 0xFFFFFFFFu : (1u << (8u * size_bytes)) - 1u;
+    return ((found ^ value) & compare_mask & size_mask) == 0;
+  }
+  friend bool operator==(const ObjectSetting&, const ObjectSetting&) = default;
+};
+
+}  // namespace tenon::hw::canopen

@@ -1,0 +1,32 @@
+#pragma once
+// Which identifiers Tenon gives to the process data of an arm. The lower the identifier, the
+// earlier the frame wins the bus:
+//
+//   | COB-ID     | frame                                            |
+//   | 181h       | force, first because contact is decided from it  |
+//   | 182h       | torque                                           |
+//   | 190h + i   | TPDO1 of joint i = 0, 1, ...: what it does       |
+//   | 200h + n   | RPDO1 of node n, as predefined: what it shall do |
+//
+// Joints leave their predefined 180h + n because nodes 1 and 2 would meet the force/torque frames
+// there. SYNC, EMCY, SDO, NMT and heartbeat are as predefined by CiA 301.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "shared/canopen/constants.h"
+
+namespace tenon::hw {
+
+inline constexpr std::uint32_t kForceCobId = 0x181;
+inline constexpr std::uint32_t kTorqueCobId = 0x182;
+inline constexpr std::uint32_t kJointFeedbackCobId = 0x190;
+
+[[nodiscard]] constexpr std::uint32_t joint_feedback_cob_id(std::size_t joint) {
+  return kJointFeedbackCobId + static_cast<std::uint32_t>(joint);
+}
+[[nodiscard]] constexpr std::uint32_t joint_command_cob_id(std::uint8_t node) {
+  return tenon::canopen::kRpdo1 + node;
+}
+
+}  // namespace tenon::hw

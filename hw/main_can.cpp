@@ -1,0 +1,212 @@
+// tenon-can: looks at the nodes of a CAN bus, reads and writes their objects.
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hw/can/monotonic_clock.h"
+#include "hw/can/open_bus.h"
+#include "hw/canopen/heartbeat.h"
+#include "hw/canopen/object_value.h"
+#include "hw/canopen/sdo_client.h"
+#include "hw/cia402/drive_state.h"
+#include "shared/base/error.h"
+#include "shared/canopen/constants.h"
+#include "shared/config/command_line.h"
+
+namespace tenon::hw {
+namespace {
+
+using canopen::SdoClient;
+
+constexpr std::int64_t kScanTimeout_ns = 20'000'000;
+constexpr std::int64_t kTransferTimeout_ns = 500'000'000;
+constexpr std::int64_t kListen_ns = 1'000'000'000;
+
+/// Carries a transfer that has been started to its end.
+void complete(CanBus& bus, SdoClient& client, const CanFrame& first) {
+  (void)bus.send(first);
+  while (client.state() == SdoClient::State::kBusy) {
+    bus.wait(1'000'000);
+    ReceivedFrame received;
+    while (bus.receive(received)) {
+      if (const auto next = client.process(received.frame, monotonic_now_ns())) {
+        (void)bus.send(*next);
+      }
+    }
+    if (const auto abort = client.update(monotonic_now_ns())) {
+      (void)bus.send(*abort);
+    }
+  }
+  bus.wait(0);
+}
+
+std::optional<std::uint32_t> read_number(CanBus& bus, const canopen::SdoAddress& address,
+                                         std::int64_t timeout_ns) {
+  SdoClient client(timeout_ns);
+  complete(bus, client, client.start_upload(address, monotonic_now_ns()));
+  if (client.state() != SdoClient::State::kDone) return std::nullopt;
+  return client.value();
+}
+
+int report_failure(const SdoClient& client, const canopen::SdoAddress& address) {
+  const char* reason = canopen::sdo_abort_text(client.abort_code());
+  if (client.state() == SdoClient::State::kTimedOut) {
+    std::fprintf(stderr,
+                 "node %u: no answer for %04Xh:%u within %.1f s; expected 0x%03X; check power, "
+                 "wiring, bit rate, node id\n",
+                 static_cast<unsigned>(address.node), static_cast<unsigned>(address.index),
+                 static_cast<unsigned>(address.sub), kTransferTimeout_ns * 1e-9,
+                 tenon::canopen::kSdoResponse + address.node);
+  } else {
+    std::fprintf(stderr, "node %u: %04Xh:%u refused: %s (abort 0x%08X)\n",
+                 static_cast<unsigned>(address.node), static_cast<unsigned>(address.index),
+                 static_cast<unsigned>(address.sub), reason != nullptr ? reason : "not listed",
+                 client.abort_code());
+  }
+  return 1;
+}
+
+int scan(CanBus& bus) {
+  int found = 0;
+  for (unsigned id = 1; id <= 127; ++id) {
+    const auto node = static_cast<std::uint8_t>(id);
+    const auto type = read_number(bus, {node, tenon::canopen::kDeviceType, 0}, kScanTimeout_ns);
+    if (!type) continue;
+    ++found;
+    const auto vendor = read_number(bus, {node, tenon::canopen::kIdentity, 1}, kTransferTimeout_ns);
+    std::printf("node %3u  profile %u  device type 0x%08X  vendor 0x%08X\n", id, *type & 0xFFFFu,
+                *type, vendor.value_or(0));
+  }
+  std::printf("%d node%s\n", found, found == 1 ? "" : "s");
+  return found > 0 ? 0 : 1;
+}
+
+const char* nmt_text(std::uint8_t state) {
+  switch (state & 0x7F) {
+    case tenon::canopen::kStateBootUp:
+      return "boot-up";
+    case tenon::canopen::kStateStopped:
+      return "stopped";
+    case tenon::canopen::kStateOperational:
+      return "operational";
+    case tenon::canopen::kStatePreOperational:
+      return "pre-operational";
+  }
+  return "unknown";
+}
+
+/// Heartbeats of one second, and the statusword of whoever has one.
+int state(CanBus& bus) {
+  std::array<std::optional<std::uint8_t>, 128> states;
+  const std::int64_t end_ns = monotonic_now_ns() + kListen_ns;
+  while (monotonic_now_ns() < end_ns) {
+    bus.wait(10'000'000);
+    ReceivedFrame received;
+    while (bus.receive(received)) {
+      if (const auto heartbeat = canopen::decode_heartbeat(received.frame)) {
+        states[heartbeat->node] = heartbeat->state;
+      }
+    }
+  }
+  int found = 0;
+  for (unsigned id = 1; id <= 127; ++id) {
+    if (!states[id]) continue;
+    ++found;
+    std::printf("node %3u  %s", id, nmt_text(*states[id]));
+    const auto word = read_number(
+        bus, {static_cast<std::uint8_t>(id), tenon::canopen::kStatusword, 0}, kScanTimeout_ns);
+    if (word) {
+      const auto status = static_cast<std::uint16_t>(*word);
+      std::printf("  drive: %s (0x%04X)", cia402::to_string(cia402::decode_statusword(status)),
+                  *word);
+    }
+    std::printf("\n");
+  }
+  if (found == 0) {
+    std::fprintf(stderr,
+                 "no heartbeat within 1 s; nodes produce none before they are configured "
+                 "(1017h): try scan\n");
+  }
+  return found > 0 ? 0 : 1;
+}
+
+int read(CanBus& bus, const canopen::SdoAddress& address) {
+  SdoClient client(kTransferTimeout_ns);
+  complete(bus, client, client.start_upload(address, monotonic_now_ns()));
+  if (client.state() != SdoClient::State::kDone) return report_failure(client, address);
+  std::printf("%s\n", canopen::object_text(client.data()).c_str());
+  return 0;
+}
+
+int write(CanBus& bus, const canopen::SdoAddress& address, std::span<const std::uint8_t> bytes) {
+  SdoClient client(kTransferTimeout_ns);
+  complete(bus, client, client.start_download(address, bytes, monotonic_now_ns()));
+  return client.state() == SdoClient::State::kDone ? 0 : report_failure(client, address);
+}
+
+struct Arguments {
+  std::string uri;
+  std::uint32_t bitrate_bps = 1'000'000;
+  unsigned node = 0;
+  std::string index;
+  std::string sub;
+  std::string type;
+  std::string value;
+
+  [[nodiscard]] canopen::SdoAddress address() const {
+    const auto index_bytes = canopen::object_bytes("u16", index);
+    const auto sub_bytes = canopen::object_bytes("u8", sub);
+    return {static_cast<std::uint8_t>(node),
+            static_cast<std::uint16_t>(index_bytes[0] | index_bytes[1] << 8), sub_bytes[0]};
+  }
+};
+
+int run(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{
+      "Looks at the nodes of a CAN bus, reads and writes their objects.\n"
+      "Example: tenon-can --can socketcan:can0 read 3 0x6041 0"};
+  app.set_version_flag("--version", TENON_VERSION);
+  app.add_option("--can", arguments.uri, "socketcan:IFACE, slcan:/dev/TTY or slcan://HOST:PORT")
+      ->required();
+  app.add_option("--bitrate", arguments.bitrate_bps, "bit/s, for slcan adapters")
+      ->capture_default_str();
+  app.require_subcommand(1);
+  const auto* scan_command = app.add_subcommand("scan", "ask all 127 nodes who they are");
+  const auto* state_command = app.add_subcommand("state", "listen for heartbeats for a second");
+  auto* read_command = app.add_subcommand("read", "read an object");
+  auto* write_command = app.add_subcommand("write", "write an object");
+  for (auto* command : {read_command, write_command}) {
+    command->add_option("NODE", arguments.node)->required()->check(CLI::Range(1, 127));
+    command->add_option("INDEX", arguments.index, "such as 0x6041")->required();
+    command->add_option("SUB", arguments.sub)->required();
+  }
+  write_command->add_option("TYPE", arguments.type, "u8 u16 u32 i8 i16 i32 str")->required();
+  write_command->add_option("VALUE", arguments.value)->required();
+  parse(app, argc, argv);
+
+  // Everything that was typed is checked before anything is opened.
+  const bool with_object = read_command->parsed() || write_command->parsed();
+  const canopen::SdoAddress address = with_object ? arguments.address() : canopen::SdoAddress{};
+  const std::vector<std::uint8_t> bytes =
+      write_command->parsed() ? canopen::object_bytes(arguments.type, arguments.value)
+                              : std::vector<std::uint8_t>{};
+  const std::unique_ptr<CanBus> bus = open_bus(arguments.uri, arguments.bitrate_bps);
+  if (scan_command->parsed()) return scan(*bus);
+  if (state_command->parsed()) return state(*bus);
+  return read_command->parsed() ? read(*bus, address) : write(*bus, address, bytes);
+}
+
+}  // namespace
+}  // namespace tenon::hw
+
+int main(int argc, char** argv) {
+  return tenon::run_main("tenon-can", [&] { return tenon::hw::run(argc, argv); });
+}

@@ -1,0 +1,52 @@
+#pragma once
+// A belief: where the tool may be, as a handful of particles at rest. Its mean, its uncertainty,
+// its distance to another, and the identity by which the search recognises it. Pure functions; any
+// thread; nothing here simulates.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shared/ports/rollout.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+struct Belief {
+  std::vector<Particle> particles;  ///< never empty
+};
+
+/// Weights between position and orientation, the same in distances and in uncertainties.
+struct Metric {
+  double position_weight = 1.0;
+  double orientation_weight = 0.1;  ///< m per rad
+};
+
+[[nodiscard]] Metric metric_of(const Task& task);
+
+/// The tips of the cross-polytope: nominal +- c_p sigma along every search coordinate that has a
+/// sigma; the nominal pose alone where none has. Nothing touches. Friction is uncertain too: the
+/// tips take turns between its extremes.
+[[nodiscard]] Belief cross_polytope(const Task& task, const Start& start);
+
+/// Mean position, and the rotation from which the rotation vectors to all others sum up to zero.
+[[nodiscard]] Pose mean_pose(const Belief& belief);
+
+/// u = w_p Tr Cov(position) + w_o Tr Cov(orientation), population covariances, the orientation as
+/// rotation vectors about the mean (m^2).
+[[nodiscard]] double uncertainty(const Belief& belief, const Metric& metric);
+
+/// w_p |position difference| + w_o (angle between), m. A metric.
+[[nodiscard]] double distance(const Pose& a, const Pose& b, const Metric& metric);
+
+/// Two beliefs with equal keys are one state of the search: every particle in the same cell of a
+/// 1 mm, 0.2 degree grid and with the same contacts. States that differ only in their contacts
+/// differ: pressing and not pressing against a wall have different successors.
+using BeliefKey = std::vector<std::int64_t>;
+[[nodiscard]] BeliefKey identity(const Belief& belief);
+
+/// The cell of one particle on a grid of that size.
+void append_cell(const Particle& particle, double cell_m, double cell_rad,
+                 std::vector<std::int64_t>& key);
+
+}  // namespace tenon::planner

@@ -1,0 +1,53 @@
+#pragma once
+// The lattice of beliefs as a search graph: numbers for beliefs, costs and heuristics for edges.
+
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "planner/heuristics.h"
+#include "planner/search_graph.h"
+#include "planner/successor.h"
+
+namespace tenon::planner {
+
+/// Grows as it is asked. Keeps its states, and the engine its rollouts, from one search to the
+/// next; refused edges stay refused. One thread at a time.
+class BeliefGraph final : public SearchGraph {
+ public:
+  /// task and succ must outlive this.
+  BeliefGraph(const Task& task, const Belief& start, std::vector<Attractor> attractors,
+              SuccessorEngine& succ);
+
+  [[nodiscard]] StateId start() const override { return 0; }
+  [[nodiscard]] bool is_goal(StateId state) const override;
+  [[nodiscard]] std::vector<Edge> successors(StateId state) override;
+  [[nodiscard]] std::size_t inadmissible_count() const override { return attractors_.size(); }
+  [[nodiscard]] double heuristic(std::size_t v, StateId state) const override;
+
+  /// The edge does not exist: certification contradicted it.
+  void refuse(StateId state, int label);
+
+  [[nodiscard]] std::size_t size() const { return beliefs_.size(); }
+  [[nodiscard]] std::size_t refused() const { return refused_.size(); }
+  [[nodiscard]] const Belief& belief(StateId state) const { return beliefs_[state]; }
+  [[nodiscard]] const BeliefSummary& summary(StateId state) const { return summaries_[state]; }
+  /// The displacement of an action in a state.
+  [[nodiscard]] Vector6 displacement(StateId state, int label) const;
+
+ private:
+  [[nodiscard]] std::vector<Primitive> primitives(StateId state) const;
+  StateId number(const Belief& belief);
+
+  const Task& task_;
+  std::vector<Attractor> attractors_;
+  SuccessorEngine& succ_;
+  std::vector<Primitive> steps_;
+  std::vector<Belief> beliefs_;
+  std::vector<BeliefSummary> summaries_;
+  std::map<BeliefKey, StateId> numbers_;
+  std::set<std::pair<StateId, int>> refused_;
+};
+
+}  // namespace tenon::planner

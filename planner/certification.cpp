@@ -1,0 +1,178 @@
+#include "planner/certification.h"
+
+#include <algorithm>
+
+#include "planner/heuristics.h"
+#include "planner/text.h"
+#include "shared/base/error.h"
+#include "shared/plan/codec.h"
+
+namespace tenon::planner {
+namespace {
+
+constexpr double kPoseAgreement_m = 0.5e-3;
+constexpr double kPoseAgreement_rad = 0.2 * 3.14159265358979323846 / 180.0;
+
+Belief ends(const std::vector<Chain>& chains) {
+  Belief belief;
+  for (const Chain& chain : chains) belief.particles.push_back({chain.end(), {}, {}});
+  return belief;
+}
+
+/// Every move of both against each other. @return empty where they agree
+std::string difference(const GuardedMove::Result& move, const GuardedMove::Result& reference,
+                       bool compare_pose) {
+  if (move.outcome != reference.outcome) {
+    return std::string("outcome ") + to_string(move.outcome) + ", as planned " +
+           to_string(reference.outcome);
+  }
+  if (move.signature != reference.signature) {
+    return "contacts " + to_string(move.signature) + ", as planned " +
+           to_string(reference.signature);
+  }
+  const Vector6 off = displacement_between(reference.pose, move.pose);
+  if (compare_pose &&
+      (off.head<3>().norm() > kPoseAgreement_m || off.tail<3>().norm() > kPoseAgreement_rad)) {
+    return format("pose differs by %.3f mm", 1e3 * off.head<3>().norm());
+  }
+  return {};
+}
+
+void keep_earliest(VariantRun& run, const Disagreement& found) {
+  if (run.holds || found.step < run.disagreement.step) run.disagreement = found;
+  run.holds = false;
+}
+
+void judge(VariantRun& run, const VariantRun& reference, const Task& task, std::size_t last_step) {
+  run.holds = true;
+  const bool compare_pose = run.variant.friction == reference.variant.friction;
+  for (std::size_t p = 0; p < run.chains.size(); ++p) {
+    const Chain& chain = run.chains[p];
+    const Chain& planned = reference.chains[p];
+    const std::size_t common = std::min(chain.moves.size(), planned.moves.size());
+    for (std::size_t i = 0; i < common; ++i) {
+      const std::string why = difference(chain.moves[i], planned.moves[i], compare_pose);
+      if (why.empty()) continue;
+      keep_earliest(run, {chain.steps[i], p, why});
+      break;
+    }
+    if (!chain.done) {
+      keep_earliest(run, {chain.steps.empty() ? 0 : chain.steps.back(), p, chain.failure});
+    }
+  }
+  if (!run.holds) return;
+  const BeliefSummary end = summarise(ends(run.chains), task);
+  if (at_goal(end, task)) return;
+  keep_earliest(run,
+                {last_step, 0,
+                 format("the chain ends beside the goal: farthest particle %.3f mm, u %.3g m^2",
+                        1e3 * end.farthest_m, end.uncertainty_m2)});
+}
+
+double cost_of(const std::vector<Chain>& chains, const Task& task) {
+  std::vector<BeliefSummary> nodes;
+  for (std::size_t i = 0;; ++i) {
+    Belief belief;
+    for (const Chain& chain : chains) {
+      if (i > chain.moves.size()) return 0.0;
+      belief.particles.push_back({i == 0 ? chain.start.pose : chain.moves[i - 1].pose, {}, {}});
+    }
+    nodes.push_back(summarise(belief, task));
+    if (i == chains.front().moves.size()) break;
+  }
+  double cost = 0.0;
+  for (std::size_t i = 1; i < nodes.size(); ++i) cost += edge_cost(nodes[i - 1], nodes[i], task);
+  return cost;
+}
+
+}  // namespace
+
+std::vector<CertificationVariant> certification_variants(const Task& task) {
+  const std::int64_t step_us = task.rollout_step_us;
+  return {{"as planned", std::nullopt, step_us},
+          {"half the integration step", std::nullopt, step_us / 2},
+          {"lowest friction", task.friction.low, step_us},
+          {"highest friction", task.friction.high, step_us}};
+}
+
+bool Certification::holds() const { return refuting() == nullptr; }
+
+const VariantRun* Certification::refuting() const {
+  const VariantRun* earliest = nullptr;
+  for (const VariantRun& run : runs) {
+    if (run.holds) continue;
+    if (earliest == nullptr || run.disagreement.step < earliest->disagreement.step) earliest = &run;
+  }
+  return earliest;
+}
+
+const Start& start_of(const Plan& plan, const Task& task) {
+  for (const Start& start : task.starts) {
+    if (start.name != plan.start_name) continue;
+    if (start.pose.position_m.isApprox(plan.start.position_m, 1e-5) &&
+        start.pose.orientation.angularDistance(plan.start.orientation) < 1e-5) {
+      return start;
+    }
+    throw InputError("plan: its start '" + plan.start_name + "' stands elsewhere in task '" +
+                     task.name + "': plan again");
+  }
+  throw InputError("plan: task '" + task.name + "' has no start '" + plan.start_name +
+                   "': give the task that the plan was made from");
+}
+
+namespace {
+
+// What the plan says of its task, as far as success is judged by it. The file holds 32-bit floats.
+void check_same_task(const Plan& plan, const Task& task) {
+  const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-5 * std::abs(b) + 1e-9; };
+  const auto refuse = [&](const char* what) {
+    throw InputError(std::string("plan: its ") + what + " is not that of task '" + task.name +
+                     "': plan again");
+  };
+  if (!plan.goal.position_m.isApprox(task.goal.position_m, 1e-5) ||
+      plan.goal.orientation.angularDistance(task.goal.orientation) > 1e-5) {
+    refuse("goal");
+  }
+  if (!same(plan.goal_tolerance_m, task.goal_tolerance_m)) refuse("goal tolerance");
+  if (!same(plan.compliance.mass_kg, task.compliance.mass_kg) ||
+      !same(plan.compliance.damping_Nspm, task.compliance.damping_Nspm) ||
+      !same(plan.compliance.stiffness_Npm, task.compliance.stiffness_Npm) ||
+      plan.compliance.compliant_axes != task.compliance.compliant_axes) {
+    refuse("compliance");
+  }
+  if (!same(plan.force_limit_N, task.force_limit_N)) refuse("force limit");
+}
+
+}  // namespace
+
+Certification certify(std::span<const std::uint8_t> bytes, const Task& task, RolloutPool& pool) {
+  const DecodedPlan decoded = decode_plan(bytes);
+  if (!decoded.plan) {
+    throw InputError("plan: byte " + std::to_string(decoded.offset) + ", " + decoded.field + ": " +
+                     to_string(decoded.error));
+  }
+  const Plan& plan = *decoded.plan;
+  check_same_task(plan, task);
+  const Belief belief = cross_polytope(task, start_of(plan, task));
+  const std::size_t particles = belief.particles.size();
+
+  Certification certification;
+  for (const CertificationVariant& variant : certification_variants(task)) {
+    certification.runs.push_back({variant, std::vector<Chain>(particles), false, {}});
+  }
+  pool.run(certification.runs.size() * particles, [&](Rollout& rollout, std::size_t i) {
+    VariantRun& run = certification.runs[i / particles];
+    Particle start = belief.particles[i % particles];
+    start.physics.friction = run.variant.friction.value_or(start.physics.friction);
+    start.physics.contact_stiffness_Npm = plan.contact_stiffness_Npm;
+    run.chains[i % particles] = run_chain(rollout, plan, start, run.variant.step_us);
+  });
+  const std::size_t last_step = plan.steps.empty() ? 0 : plan.steps.size() - 1;
+  for (VariantRun& run : certification.runs) {
+    judge(run, certification.runs.front(), task, last_step);
+  }
+  certification.cost = cost_of(certification.runs.front().chains, task);
+  return certification;
+}
+
+}  // namespace tenon::planner

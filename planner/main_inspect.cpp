@@ -1,0 +1,132 @@
+// tenon-inspect: what a plan file says, whether it still holds, and why it works.
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "planner/html_report.h"
+#include "planner/inspection.h"
+#include "planner/summary.h"
+#include "shared/base/error.h"
+#include "shared/config/command_line.h"
+#include "shared/config/load.h"
+#include "sim/rollout/ode_rollout.h"
+
+namespace {
+
+using namespace tenon;
+
+constexpr std::size_t kReportDraws = 60;
+
+struct Arguments {
+  std::string plan;
+  std::string json;
+  std::string task;
+  std::string report;
+  std::string recertify;
+  std::size_t threads = 1;
+};
+
+void describe(CLI::App& app, Arguments& a) {
+  app.set_version_flag("--version", TENON_VERSION);
+  app.footer(
+      "Example: tenon-inspect plan.tnp --recertify planner/tasks/box_on_table_2d.yaml\n"
+      "         tenon-inspect plan.tnp --task planner/tasks/box_on_table_2d.yaml --report "
+      "out.html");
+  app.add_option("plan", a.plan, "Plan file")->required();
+  app.add_option("--json", a.json,
+                 "File for everything that the plan holds, - for standard output");
+  CLI::Option* task = app.add_option("--task", a.task, "Task file that the plan was made from");
+  app.add_option("--report", a.report, "HTML file: the plan seen from above, and why it works")
+      ->needs(task);
+  app.add_option("--recertify", a.recertify,
+                 "Task file: simulate the plan's whole chain again; exit status 1 if it fails");
+  app.add_option("--threads", a.threads, "Threads of the simulation")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+}
+
+std::vector<std::uint8_t> bytes_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file + ": cannot be read");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+Task task_of(const Plan& plan, const std::string& file) {
+  Task task = load_task(file);
+  if (task.hash != plan.task_hash) {
+    std::fprintf(stderr,
+                 "tenon-inspect: note: %s is not byte for byte the task that the plan was "
+                 "made from\n",
+                 file.c_str());
+  }
+  return task;
+}
+
+bool recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
+  const Task task = task_of(plan, a.recertify);
+  planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
+  const planner::Certification certification = planner::certify(bytes, task, pool);
+  std::FILE* out = a.json == "-" ? stderr : stdout;
+  for (const planner::VariantRun& run : certification.runs) {
+    if (run.holds) {
+      std::fprintf(out, "certified: yes, %s, %zu particles\n", run.variant.name.c_str(),
+                   run.chains.size());
+    } else {
+      std::fprintf(out, "certified: NO, %s: step %zu, particle %zu: %s\n", run.variant.name.c_str(),
+                   run.disagreement.step, run.disagreement.particle, run.disagreement.why.c_str());
+    }
+  }
+  const bool same_cost = std::abs(certification.cost - plan.cost) <= 1e-3 * certification.cost;
+  if (!same_cost) {
+    std::fprintf(out, "certified: NO, the plan says that it costs %.0f, its chain costs %.0f\n",
+                 plan.cost, certification.cost);
+  }
+  const bool same_task = task.hash == plan.task_hash;
+  if (!same_task) {
+    std::fprintf(out, "certified: NO, the plan was made from another version of %s\n",
+                 a.recertify.c_str());
+  }
+  return certification.holds() && same_cost && same_task;
+}
+
+void write_report(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
+  const Task task = task_of(plan, a.task);
+  planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
+  planner::ValidationParameters few;
+  few.draws = kReportDraws;
+  write_file(a.report,
+             planner::html_report(
+                 plan, task, planner::certify(bytes, task, pool),
+                 planner::validate(plan, task, planner::start_of(plan, task), few, pool)));
+}
+
+int run(const Arguments& a) {
+  const Plan plan = load_plan(a.plan);
+  const std::vector<std::uint8_t> bytes = bytes_of(a.plan);
+  if (a.json == "-") {
+    std::fputs(planner::plan_json(plan, bytes.size()).c_str(), stdout);
+  } else {
+    if (!a.json.empty()) write_file(a.json, planner::plan_json(plan, bytes.size()));
+    std::fputs(planner::header_text(plan, bytes.size()).c_str(), stdout);
+    std::fputs(planner::step_table(plan).c_str(), stdout);
+  }
+  if (!a.report.empty()) write_report(a, plan, bytes);
+  return a.recertify.empty() || recertify(a, plan, bytes) ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tenon::run_main("tenon-inspect", [&] {
+    Arguments arguments;
+    CLI::App app("Shows a plan file, certifies it again, and reports why it works.");
+    describe(app, arguments);
+    tenon::parse(app, argc, argv);
+    return run(arguments);
+  });
+}

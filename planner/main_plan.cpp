@@ -1,0 +1,118 @@
+// tenon-plan: a task file in, a certified plan out.
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "planner/planner.h"
+#include "planner/summary.h"
+#include "shared/base/error.h"
+#include "shared/config/command_line.h"
+#include "shared/config/load.h"
+#include "sim/rollout/ode_rollout.h"
+
+namespace {
+
+using namespace tenon;
+
+struct Arguments {
+  std::string task;
+  std::string start;
+  std::string cell;
+  std::string method = "mha";
+  std::string output;
+  std::string json;
+  std::size_t threads = 1;
+  std::size_t draws = 200;
+  std::optional<double> time_limit_s;
+};
+
+void describe(CLI::App& app, Arguments& a) {
+  app.set_version_flag("--version", TENON_VERSION);
+  app.footer("Example: tenon-plan planner/tasks/box_on_table_2d.yaml --start 1 -o plan.tnp");
+  app.add_option("task", a.task, "Task file")->required();
+  app.add_option("--start", a.start, "Name of the start to plan from (the task's first)");
+  app.add_option("--cell", a.cell, "Cell file: plan for its contact stiffness and latency");
+  app.add_option("--method", a.method, "Planner")
+      ->check(CLI::IsMember({"mha"}))
+      ->capture_default_str();
+  app.add_option("--threads", a.threads, "Threads; the plan does not depend on it")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_option("--time-limit", a.time_limit_s, "Seconds for the search (the task's)");
+  app.add_option("--draws", a.draws, "Random starts of the validation")
+      ->check(CLI::Range(200, 100000))
+      ->capture_default_str();
+  app.add_option("-o,--output", a.output, "Plan file to write")->required();
+  app.add_option("--json", a.json, "File for the statistics, - for standard output");
+}
+
+const Start& chosen_start(const Task& task, const std::string& name) {
+  if (name.empty() && !task.starts.empty()) return task.starts.front();
+  std::string names;
+  for (const Start& start : task.starts) {
+    if (start.name == name) return start;
+    names += (names.empty() ? "" : ", ") + start.name;
+  }
+  throw InputError("--start " + name + ": task '" + task.name + "' has only the starts " + names);
+}
+
+int run(const Arguments& a) {
+  Task task = load_task(a.task);
+  if (a.time_limit_s) {
+    if (!(*a.time_limit_s > 0.0 && *a.time_limit_s <= 86400.0)) {
+      throw InputError("--time-limit = " + std::to_string(*a.time_limit_s) +
+                       ", must be in (0, 86400] s");
+    }
+    task.time_limit_s = *a.time_limit_s;
+  }
+  check_writable(a.output);
+  if (!a.json.empty() && a.json != "-") check_writable(a.json);
+  const Start& start = chosen_start(task, a.start);
+
+  planner::PlannerOptions options;
+  options.threads = a.threads;
+  options.validation.draws = a.draws;
+  options.assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
+  if (!a.cell.empty()) {
+    const Cell cell = load_cell(a.cell);
+    options.assumptions.contact_stiffness_Npm = cell.contact_stiffness_Npm;
+    options.assumptions.latency_max_s = latency_s(cell.robot);
+  }
+  sim::OdeRollout rollout(task);
+  planner::check_start(task, start, rollout);
+
+  const auto began = std::chrono::steady_clock::now();
+  const auto now_s = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  };
+  const planner::PlanReport report = planner::make_plan(task, start, rollout, options, now_s);
+
+  if (a.json == "-") {
+    std::fputs(planner::statistics_json(report).c_str(), stdout);
+  } else if (!a.json.empty()) {
+    write_file(a.json, planner::statistics_json(report));
+  }
+  if (report.status != planner::PlanStatus::kPlanned) {
+    std::fprintf(stderr, "tenon-plan: no plan from start '%s': %s: %s\n", start.name.c_str(),
+                 planner::to_string(report.status), report.reason.c_str());
+    return 1;
+  }
+  write_file(a.output, report.bytes);
+  if (a.json != "-") std::fputs(planner::summary(report, task, a.output).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tenon::run_main("tenon-plan", [&] {
+    Arguments arguments;
+    CLI::App app("Plans guarded moves that reach a goal although the start is uncertain.");
+    describe(app, arguments);
+    tenon::parse(app, argc, argv);
+    return run(arguments);
+  });
+}

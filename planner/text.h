@@ -1,0 +1,17 @@
+#pragma once
+// What the planner's texts share. Offline; any thread.
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "shared/base/text.h"
+
+namespace tenon::planner {
+
+/// Millimetres of m on axes 0..2, degrees of rad on the others: what people measure in.
+[[nodiscard]] inline double shown(double value, int axis) {
+  return axis < 3 ? 1e3 * value : 180.0 / std::numbers::pi * value;
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,41 @@
+#pragma once
+// Many starts drawn from the start's distribution, each run through the plan: what the particles on
+// the belief's rim cannot say about its inside.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "planner/chain.h"
+#include "planner/rollout_pool.h"
+#include "shared/plan/plan.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+struct Draw {
+  double mahalanobis = 0.0;  ///< how far out the start is, standard deviations
+  Chain chain;
+  bool at_goal = false;  ///< the plan was done and its tool within d_tol of the goal
+};
+
+struct Validation {
+  std::vector<Draw> draws;
+
+  [[nodiscard]] std::size_t at_goal() const;
+  /// Those within `sigmas` standard deviations, and how many of them ended at the goal.
+  [[nodiscard]] std::size_t within(double sigmas) const;
+  [[nodiscard]] std::size_t at_goal_within(double sigmas) const;
+};
+
+struct ValidationParameters {
+  std::size_t draws = 200;
+  std::uint64_t seed = 1;
+};
+
+/// Normal starts out to c_p + 1 standard deviations (farther ones, and those in collision, are
+/// drawn again), friction even over the task's range.
+[[nodiscard]] Validation validate(const Plan& plan, const Task& task, const Start& start,
+                                  const ValidationParameters& parameters, RolloutPool& pool);
+
+}  // namespace tenon::planner

@@ -1,0 +1,64 @@
+#pragma once
+// A robot as hw/robots/NAME/robot.yaml gives it.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "shared/math/pose.h"
+
+namespace tenon {
+
+struct Joint {
+  enum class Kind : std::uint8_t { kPrismatic, kRevolute };
+  enum class Mode : std::uint8_t { kInterpolatedPosition = 7, kCyclicSynchronousPosition = 8 };
+  std::string name;
+  Kind kind = Kind::kPrismatic;
+  Pose origin;                      ///< joint frame in its parent link's frame at position 0
+  Vector3 axis = Vector3::UnitX();  ///< unit, in the joint frame
+  std::uint8_t node = 0;            ///< CANopen node id, 1..127
+  Mode mode = Mode::kCyclicSynchronousPosition;
+  double counts_per_unit = 0.0;  ///< per m or rad; negative where the drive counts backwards
+  double zero_counts = 0.0;      ///< counts at position 0
+  double lower = 0.0;            ///< m or rad
+  double upper = 0.0;
+  double speed_max = 0.0;  ///< m/s or rad/s
+  double acceleration_max = 0.0;
+  double effort_max = 0.0;           ///< N or Nm
+  double rated_effort = 0.0;         ///< N or Nm, unit of 6077h is a thousandth of it
+  double following_error_max = 0.0;  ///< m or rad, written to 6065h
+  double moving_mass_kg = 0.0;       ///< of the link behind the joint
+};
+
+/// A force/torque node: two TPDOs of four little-endian i16 (three values and a sample counter).
+struct ForceTorqueSensor {
+  std::uint8_t node = 0;
+  double force_per_count_N = 0.0;
+  double torque_per_count_Nm = 0.0;
+  double force_range_N = 0.0;  ///< saturation
+  double torque_range_Nm = 0.0;
+  double force_noise_N = 0.0;  ///< standard deviation of a sample, by data sheet
+  double torque_noise_Nm = 0.0;
+};
+
+struct Robot {
+  std::string name;
+  std::vector<Joint> joints;  ///< base to flange, at most kMaxJoints
+  Pose flange;                ///< in the last link's frame
+  ForceTorqueSensor sensor;
+  std::uint32_t bitrate_bps = 1'000'000;
+  std::uint32_t cycle_us = 2000;
+  std::uint32_t heartbeat_ms = 100;  ///< of every node and of the master
+  std::uint32_t heartbeat_timeout_ms = 300;
+  std::uint8_t master_node = 127;
+  double response_lag_s = 0.0;       ///< tau_arm: setpoint to motion
+  double stiffness_Npm = 1e6;        ///< of the arm at the tool, physical
+  int measurement_delay_cycles = 1;  ///< n
+};
+
+/// tau = (n + 1/2) T + tau_arm: from a force to the motion that answers it.
+[[nodiscard]] inline double latency_s(const Robot& robot) {
+  return (robot.measurement_delay_cycles + 0.5) * 1e-6 * robot.cycle_us + robot.response_lag_s;
+}
+
+}  // namespace tenon

@@ -1,0 +1,45 @@
+#pragma once
+// What every main does around its work: parse, run, and turn whatever was thrown into one line and
+// an exit status: 0 success, 1 failure, 2 bad usage or bad input.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "shared/base/error.h"
+
+namespace tenon {
+
+/// --help or --version has been answered.
+struct CommandLineAnswered {};
+
+/// @throws InputError for bad usage, CommandLineAnswered after --help or --version
+inline void parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) throw InputError(std::string(error.what()) + "; see --help");
+    static_cast<void>(app.exit(error));
+    throw CommandLineAnswered{};
+  }
+}
+
+/// The exit status of `work()`, or of what it threw.
+template <typename Work>
+int run_main(const char* program, const Work& work) noexcept {
+  try {
+    return work();
+  } catch (const CommandLineAnswered&) {
+    return 0;
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+  } catch (...) {
+    std::fprintf(stderr, "%s: stopped by something unknown\n", program);
+  }
+  return 1;
+}
+
+}  // namespace tenon

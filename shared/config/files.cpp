@@ -1,0 +1,112 @@
+#include "shared/config/files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "shared/base/error.h"
+#include "shared/config/load.h"
+
+namespace tenon {
+namespace {
+
+constexpr std::size_t kFileMax_bytes = 16U << 20U;
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what, int error) {
+  throw InputError(file.string() + ": cannot be " + what + ": " + std::strerror(error));
+}
+
+/// An open file that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  [[nodiscard]] int number() const { return number_; }
+  /// 0, or the error that was found only now.
+  [[nodiscard]] int close() { return ::close(std::exchange(number_, -1)) == 0 ? 0 : errno; }
+
+ private:
+  int number_;
+};
+
+/// 0 or errno.
+int write_all(int descriptor, std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+/// A new file with these bytes on the disk. 0 or errno.
+int write_new(const std::filesystem::path& file, std::span<const std::uint8_t> bytes) {
+  Descriptor descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (descriptor.number() < 0) return errno;
+  if (const int error = write_all(descriptor.number(), bytes)) return error;
+  if (::fsync(descriptor.number()) != 0) return errno;
+  return descriptor.close();
+}
+
+}  // namespace
+
+namespace config {
+
+std::string read_file(const std::filesystem::path& file) {
+  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (descriptor.number() < 0) fail(file, "read", errno);
+  std::string text;
+  for (;;) {
+    constexpr std::size_t kChunk_bytes = 64U << 10U;
+    const std::size_t before = text.size();
+    if (before > kFileMax_bytes) fail(file, "read", EFBIG);
+    text.resize(before + kChunk_bytes);
+    const ssize_t got = ::read(descriptor.number(), text.data() + before, kChunk_bytes);
+    if (got < 0 && errno != EINTR) fail(file, "read", errno);
+    text.resize(before + static_cast<std::size_t>(got < 0 ? 0 : got));
+    if (got == 0) return text;
+  }
+}
+
+}  // namespace config
+
+void check_writable(const std::filesystem::path& file) {
+  // A device or a folder would be replaced by the rename.
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InputError(file.string() + ": cannot be written: it is not a regular file");
+  }
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(file, "written", errno);
+}
+
+void write_file(const std::filesystem::path& file, std::span<const std::uint8_t> bytes) {
+  check_writable(file);
+  std::filesystem::path temporary = file;
+  temporary += "." + std::to_string(::getpid()) + ".tmp";
+  int error = write_new(temporary, bytes);
+  if (error == 0 && ::rename(temporary.c_str(), file.c_str()) != 0) error = errno;
+  if (error != 0) {
+    if (error != EEXIST) ::unlink(temporary.c_str());
+    fail(file, "written", error);
+  }
+  // The new name outlives a power cut only once its folder is on the disk too.
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (directory.number() >= 0) (void)::fsync(directory.number());
+}
+
+void write_file(const std::filesystem::path& file, const std::string& text) {
+  write_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+}  // namespace tenon

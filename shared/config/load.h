@@ -1,0 +1,37 @@
+#pragma once
+// Files in, files out. Everything here throws InputError with one line that names file, line, key,
+// value and bound. Not for real time.
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shared/cell/cell.h"
+#include "shared/plan/plan.h"
+#include "shared/task/task.h"
+
+namespace tenon {
+
+/// planner/tasks/*.yaml. Checks everything that can be told without physics; a start in collision
+/// is refused by check_starts() in the planner.
+[[nodiscard]] Task load_task(const std::filesystem::path& file);
+
+/// hw/robots/NAME/robot.yaml.
+[[nodiscard]] Robot load_robot(const std::filesystem::path& file);
+
+/// hw/cells/NAME.yaml. The robot is named relative to the cell's file.
+[[nodiscard]] Cell load_cell(const std::filesystem::path& file);
+
+/// A .tnp file.
+[[nodiscard]] Plan load_plan(const std::filesystem::path& file);
+
+/// Throws where write_file() could not succeed; call it before work whose result would be lost.
+void check_writable(const std::filesystem::path& file);
+
+/// Writes to a temporary file beside `file`, flushes it and renames it: whole or not at all.
+void write_file(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
+void write_file(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace tenon

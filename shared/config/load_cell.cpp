@@ -1,0 +1,35 @@
+#include "shared/config/files.h"
+#include "shared/config/load.h"
+#include "shared/config/yaml_value.h"
+
+namespace tenon {
+
+Cell load_cell(const std::filesystem::path& file) {
+  using config::Map;
+  using config::positive_to;
+  using config::Value;
+
+  const Map map(Value::parse(file, config::read_file(file)),
+                {"name", "robot", "task_in_base", "tool_in_flange", "sensor_in_flange", "payload",
+                 "contact_stiffness_Npm", "faults"});
+  Cell cell;
+  cell.name = map.at("name").name();
+  cell.X_BT = map.at("task_in_base").pose();
+  cell.X_FP = map.at("tool_in_flange").pose();
+  cell.X_FS = map.at("sensor_in_flange").pose();
+
+  const Map payload(map.at("payload"), {"mass_kg", "com_m"});
+  cell.payload_mass_kg = payload.number("mass_kg", {0.0, 100.0});
+  cell.payload_com_m = payload.at("com_m").vector(config::within(1.0));
+  cell.contact_stiffness_Npm = map.number("contact_stiffness_Npm", {1e2, 1e8});
+
+  cell.robot = load_robot((file.parent_path() / map.at("robot").text()).lexically_normal());
+
+  // Beyond its range the sensor would never show the fault.
+  const Map faults(map.at("faults"), {"force_N", "torque_Nm"});
+  cell.force_fault_N = faults.number("force_N", positive_to(cell.robot.sensor.force_range_N));
+  cell.torque_fault_Nm = faults.number("torque_Nm", positive_to(cell.robot.sensor.torque_range_Nm));
+  return cell;
+}
+
+}  // namespace tenon

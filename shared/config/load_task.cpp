@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "shared/config/files.h"
+#include "shared/config/load.h"
+#include "shared/config/yaml_value.h"
+#include "shared/motion/rules.h"
+
+namespace tenon {
+namespace {
+
+using config::Bounds;
+using config::Map;
+using config::positive_to;
+using config::Value;
+
+constexpr std::array<const char*, 6> kAxes = {"x", "y", "z", "rx", "ry", "rz"};
+constexpr std::size_t kShapesMax = 200;
+constexpr std::size_t kStartsMax = 200;
+
+bool has(CoordinateMask mask, int axis) { return (mask >> axis & 1U) != 0; }
+
+std::uint32_t microseconds(double time_s) {
+  return static_cast<std::uint32_t>(std::llround(1e6 * time_s));
+}
+
+/// [x, y, rz] as a mask.
+CoordinateMask read_axes(const Value& value) {
+  unsigned mask = 0;
+  for (const Value& axis : value.list(1, 6)) {
+    const unsigned bit = 1U << axis.choice({kAxes.begin(), kAxes.end()});
+    if ((mask & bit) != 0) axis.refuse_value("listed once");
+    mask |= bit;
+  }
+  return static_cast<CoordinateMask>(mask);
+}
+
+Shape read_shape(const Value& value, std::set<std::string>& names) {
+  const Map map(value, {"name", "box_m", "cylinder", "pose"});
+  Shape shape;
+  shape.name = map.at("name").name();
+  if (!names.insert(shape.name).second) map.at("name").refuse_value("unique among the shapes");
+  shape.pose = map.at("pose").pose();
+  const auto box = map.find("box_m");
+  const auto cylinder = map.find("cylinder");
+  if (box.has_value() == cylinder.has_value()) {
+    value.refuse("needs either box_m: [x, y, z] or cylinder: {diameter_m: d, length_m: l}");
+  }
+  if (box) {
+    shape.size_m = box->vector(positive_to(100.0));
+    return shape;
+  }
+  const Map sizes(*cylinder, {"diameter_m", "length_m"});
+  const double diameter_m = sizes.number("diameter_m", positive_to(100.0));
+  shape.kind = Shape::Kind::kCylinder;
+  shape.size_m = {diameter_m, diameter_m, sizes.number("length_m", positive_to(100.0))};
+  return shape;
+}
+
+/// One number for each search coordinate of a kind, in the order x y z or rx ry rz.
+void read_sigma(const Map& map, const char* key, int first_axis, CoordinateMask coordinates,
+                Vector6& sigma) {
+  std::size_t count = 0;
+  for (int axis = first_axis; axis < first_axis + 3; ++axis) count += has(coordinates, axis);
+  if (count == 0) {
+    if (const auto given = map.find(key)) given->refuse("no search coordinate has this unit");
+    return;
+  }
+  const std::vector<Value> values = map.at(key).list(count, count);
+  auto next = values.begin();
+  for (int axis = first_axis; axis < first_axis + 3; ++axis) {
+    if (has(coordinates, axis)) sigma[axis] = (next++)->number(positive_to(1.0));
+  }
+}
+
+Start read_start(const Value& value, const Task& task, std::set<std::string>& names) {
+  const Map map(value, {"name", "pose", "sigma_m", "sigma_rad"});
+  Start start;
+  start.name = map.at("name").name();
+  if (!names.insert(start.name).second) map.at("name").refuse_value("unique among the starts");
+  start.pose = map.at("pose").pose();
+  read_sigma(map, "sigma_m", 0, task.coordinates, start.sigma);
+  read_sigma(map, "sigma_rad", 3, task.coordinates, start.sigma);
+
+  // Nothing moves the tool along the other axes.
+  const Vector6 way = displacement_between(start.pose, task.goal);
+  for (int axis = 0; axis < 6; ++axis) {
+    if (has(task.coordinates, axis) || std::abs(way[axis]) <= 1e-9) continue;
+    map.at("pose").refuse("is " + std::to_string(std::abs(way[axis])) + (axis < 3 ? " m" : " rad") +
+                          " off the goal along " + kAxes[static_cast<std::size_t>(axis)] +
+                          ", which is not a search coordinate");
+  }
+  return start;
+}
+
+void read_goal(const Value& value, Task& task) {
+  const Map map(value, {"pose", "tolerance_m", "uncertainty_m2"});
+  task.goal = map.at("pose").pose();
+  task.goal_tolerance_m = map.number("tolerance_m", positive_to(1.0));
+  task.goal_uncertainty_m2 = map.number("uncertainty_m2", positive_to(1.0));
+}
+
+void read_primitives(const Value& value, Task& task) {
+  const Map map(value, {"step_m", "step_rad", "long_step_m", "direct_reach_m"});
+  task.step_m = map.number("step_m", positive_to(1.0));
+  map.optional_number("step_rad", positive_to(1.0), task.step_rad);
+  task.long_step_m = map.number("long_step_m", {task.step_m, 10.0});
+  task.direct_reach_m = map.number("direct_reach_m", {0.0, 10.0});
+}
+
+SpeedLimits read_speeds(const Value& value) {
+  const Map map(value, {"approach_mps", "contact_mps", "acceleration_mps2", "jerk_mps3",
+                        "approach_radps", "contact_radps", "acceleration_radps2", "jerk_radps3"});
+  SpeedLimits v;
+  v.approach_mps = map.number("approach_mps", positive_to(1.0));
+  v.contact_mps = map.number("contact_mps", positive_to(v.approach_mps));
+  map.optional_number("acceleration_mps2", positive_to(100.0), v.acceleration_mps2);
+  map.optional_number("jerk_mps3", positive_to(1e4), v.jerk_mps3);
+  map.optional_number("approach_radps", positive_to(3.0), v.approach_radps);
+  map.optional_number("contact_radps", positive_to(v.approach_radps), v.contact_radps);
+  map.optional_number("acceleration_radps2", positive_to(1e3), v.acceleration_radps2);
+  map.optional_number("jerk_radps3", positive_to(1e5), v.jerk_radps3);
+  return v;
+}
+
+/// Thresholds, debounce and limits; refused where they break the rules of a guarded move.
+void read_contact(const Value& value, Task& task) {
+  const Map map(value,
+                {"force_on_N", "force_keep_N", "force_off_N", "torque_on_Nm", "torque_keep_Nm",
+                 "torque_off_Nm", "debounce_s", "timeout_s", "force_limit_N", "torque_limit_Nm"});
+  ContactThresholds& t = task.motion.thresholds;
+  constexpr Bounds kForce = positive_to(1e3);
+  constexpr Bounds kTorque = positive_to(1e2);
+  t.force_on_N = map.number("force_on_N", kForce);
+  t.force_keep_N = map.number("force_keep_N", kForce);
+  t.force_off_N = map.number("force_off_N", kForce);
+  map.optional_number("torque_on_Nm", kTorque, t.torque_on_Nm);
+  map.optional_number("torque_keep_Nm", kTorque, t.torque_keep_Nm);
+  map.optional_number("torque_off_Nm", kTorque, t.torque_off_Nm);
+  t.debounce_us = microseconds(map.number("debounce_s", positive_to(0.1)));
+  if (const auto timeout = map.find("timeout_s")) {
+    task.motion.timeout_us = microseconds(timeout->number({0.1, 600.0}));
+  }
+  task.force_limit_N = map.number("force_limit_N", kForce);
+  map.optional_number("torque_limit_Nm", kTorque, task.torque_limit_Nm);
+
+  ContactConditions conditions;
+  conditions.friction_max = task.friction.high;
+  if (const auto rule =
+          broken_rule(t, task.force_limit_N, task.motion.speeds.acceleration_mps2, conditions)) {
+    value.refuse(*rule);
+  }
+}
+
+void read_compliance(const Value& value, Task& task) {
+  const Map map(value, {"axes", "mass_kg", "damping_Nspm", "stiffness_Npm", "inertia_kgm2",
+                        "damping_Nmspr", "stiffness_Nmpr"});
+  Compliance& c = task.compliance;
+  c.compliant_axes = read_axes(map.at("axes"));
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(task.coordinates, axis) || has(c.compliant_axes, axis)) continue;
+    map.at("axes").refuse("lacks the search coordinate " +
+                          std::string(kAxes[static_cast<std::size_t>(axis)]) +
+                          ": a rigid axis feels no contact");
+  }
+  c.mass_kg = map.number("mass_kg", positive_to(1e3));
+  c.damping_Nspm = map.number("damping_Nspm", positive_to(1e6));
+  c.stiffness_Npm = map.number("stiffness_Npm", positive_to(1e6));
+  map.optional_number("inertia_kgm2", positive_to(1e2), c.inertia_kgm2);
+  map.optional_number("damping_Nmspr", positive_to(1e5), c.damping_Nmspr);
+  map.optional_number("stiffness_Nmpr", positive_to(1e5), c.stiffness_Nmpr);
+}
+
+void read_search(const Value& value, Task& task) {
+  const Map map(
+      value, {"w1", "w2", "distance_weight_per_m", "uncertainty_weight_per_m2", "position_weight",
+              "orientation_weight_m_per_rad", "attractor_ratio", "time_limit_s"});
+  constexpr Bounds kWeight = positive_to(1e12);
+  constexpr Bounds kInflation = {1.0, 1e3};
+  map.optional_number("w1", kInflation, task.w1);
+  map.optional_number("w2", kInflation, task.w2);
+  map.optional_number("distance_weight_per_m", kWeight, task.distance_weight_per_m);
+  map.optional_number("uncertainty_weight_per_m2", kWeight, task.uncertainty_weight_per_m2);
+  map.optional_number("position_weight", kWeight, task.position_weight);
+  map.optional_number("orientation_weight_m_per_rad", kWeight, task.orientation_weight);
+  map.optional_number("attractor_ratio", positive_to(1.0), task.attractor_ratio);
+  map.optional_number("time_limit_s", positive_to(86'400.0), task.time_limit_s);
+}
+
+void read_physics(const Value& value, Task& task) {
+  const Map map(value, {"friction", "contact_stiffness_Npm", "rollout_step_s"});
+  const Map friction(map.at("friction"), {"low", "nominal", "high"});
+  task.friction.low = friction.number("low", {0.0, 2.0});
+  task.friction.nominal = friction.number("nominal", {task.friction.low, 2.0});
+  task.friction.high = friction.number("high", {task.friction.nominal, 2.0});
+  task.contact_stiffness_Npm = map.number("contact_stiffness_Npm", {1e2, 1e8});
+
+  const auto step = map.find("rollout_step_s");
+  if (!step) return;
+  // A longer way within one step sinks too deep before the contact answers.
+  constexpr double kStepTravelMax_m = 0.5e-3;
+  const double step_max_s = kStepTravelMax_m / task.motion.speeds.approach_mps;
+  task.rollout_step_us = microseconds(step->number({1e-4, std::min(0.01, step_max_s)}));
+}
+
+}  // namespace
+
+Task load_task(const std::filesystem::path& file) {
+  const std::string text = config::read_file(file);
+  const Map map(Value::parse(file, text),
+                {"name", "coordinates", "held", "environment", "starts", "particle_sigmas", "goal",
+                 "primitives", "speeds", "contact", "compliance", "search", "physics"});
+  Task task;
+  task.name = map.at("name").name();
+  task.hash = config::fnv1a_64(text);
+  task.coordinates = read_axes(map.at("coordinates"));
+
+  std::set<std::string> shape_names;
+  for (const Value& shape : map.at("held").list(1, kShapesMax)) {
+    task.held.push_back(read_shape(shape, shape_names));
+  }
+  for (const Value& shape : map.at("environment").list(1, kShapesMax)) {
+    task.environment.push_back(read_shape(shape, shape_names));
+  }
+
+  read_goal(map.at("goal"), task);
+  std::set<std::string> start_names;
+  for (const Value& start : map.at("starts").list(1, kStartsMax)) {
+    task.starts.push_back(read_start(start, task, start_names));
+  }
+  map.optional_number("particle_sigmas", positive_to(5.0), task.particle_sigmas);
+
+  read_primitives(map.at("primitives"), task);
+  task.motion.speeds = read_speeds(map.at("speeds"));
+  read_physics(map.at("physics"), task);
+  read_contact(map.at("contact"), task);
+  read_compliance(map.at("compliance"), task);
+  if (const auto search = map.find("search")) read_search(*search, task);
+  return task;
+}
+
+}  // namespace tenon

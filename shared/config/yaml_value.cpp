@@ -1,0 +1,212 @@
+#include "shared/config/yaml_value.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "shared/base/error.h"
+
+namespace tenon::config {
+namespace {
+
+constexpr double kPositionMax_m = 100.0;
+constexpr double kRotationMax_rad = 3.1415926535897932;
+constexpr std::size_t kNameMax = 63;
+
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
+const char* kind_of(const YAML::Node& node) {
+  if (node.IsMap()) return "a mapping";
+  if (node.IsSequence()) return "a list";
+  return node.IsScalar() ? "a single value" : "empty";
+}
+
+std::string joined(const std::vector<std::string_view>& words) {
+  std::string text;
+  for (const std::string_view word : words) {
+    if (!text.empty()) text += ", ";
+    text += word;
+  }
+  return text;
+}
+
+template <typename Number>
+std::optional<Number> parsed(const std::string& text) {
+  Number number{};
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc{} || rest != end) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+std::string to_string(const Bounds& bounds) {
+  return (bounds.open_low ? "(" : "[") + text_of(bounds.low) + ", " + text_of(bounds.high) + "]";
+}
+
+Value::Value(std::shared_ptr<const std::string> file, std::string path, const YAML::Node& node)
+    : file_(std::move(file)), path_(std::move(path)), node_(node) {}
+
+Value Value::parse(const std::filesystem::path& file, const std::string& text) {
+  auto name = std::make_shared<const std::string>(file.string());
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() != 1) {
+      throw InputError(*name + ": must hold one YAML document, holds " +
+                       std::to_string(documents.size()));
+    }
+    return {name, "", documents.front()};
+  } catch (const YAML::Exception& error) {
+    throw InputError(*name + ":" + std::to_string(error.mark.line + 1) +
+                     ": is not YAML: " + error.msg);
+  }
+}
+
+std::string Value::place() const {
+  // A node that the file does not spell out (an empty value) has no line of its own.
+  const std::string line =
+      node_.Mark().is_null() ? "" : ":" + std::to_string(node_.Mark().line + 1);
+  return *file_ + line + ": " + path_;
+}
+
+void Value::refuse(const std::string& what) const {
+  throw InputError(place() + (path_.empty() ? "" : ": ") + what);
+}
+
+void Value::refuse_value(const std::string& must_be) const {
+  const std::string value =
+      node_.IsScalar() ? " = " + node_.Scalar() : " is " + std::string(kind_of(node_));
+  throw InputError(place() + value + ", must be " + must_be);
+}
+
+const std::string& Value::scalar(const std::string& must_be) const {
+  if (!node_.IsScalar()) refuse_value(must_be);
+  return node_.Scalar();
+}
+
+double Value::number(const Bounds& bounds) const {
+  const std::string must_be = "a number in " + to_string(bounds);
+  const std::string& text = scalar(must_be);
+  constexpr const char* kQuoted = "!";
+  const std::optional<double> number = parsed<double>(text);
+  if (!number || node_.Tag() == kQuoted) refuse_value(must_be);
+  if (!std::isfinite(*number) || !bounds.holds(*number)) refuse_value("in " + to_string(bounds));
+  return *number;
+}
+
+std::int64_t Value::integer(std::int64_t low, std::int64_t high) const {
+  const std::string range = "[" + std::to_string(low) + ", " + std::to_string(high) + "]";
+  const std::optional<std::int64_t> number = parsed<std::int64_t>(scalar("an integer in " + range));
+  if (!number) refuse_value("an integer in " + range);
+  if (*number < low || *number > high) refuse_value("in " + range);
+  return *number;
+}
+
+std::string Value::name() const {
+  const std::string must_be = "a name of 1 to 63 printable ASCII characters";
+  std::string text = scalar(must_be);
+  const bool printable =
+      std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  if (text.empty() || text.size() > kNameMax || !printable) refuse_value(must_be);
+  return text;
+}
+
+std::string Value::text() const {
+  std::string text = scalar("text");
+  if (text.empty()) refuse("must not be empty");
+  return text;
+}
+
+std::size_t Value::choice(const std::vector<std::string_view>& words) const {
+  const std::string must_be = "one of: " + joined(words);
+  const auto found = std::find(words.begin(), words.end(), scalar(must_be));
+  if (found == words.end()) refuse_value(must_be);
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+std::vector<Value> Value::list(std::size_t at_least, std::size_t at_most) const {
+  const std::string count = at_least == at_most
+                                ? std::to_string(at_least)
+                                : std::to_string(at_least) + " to " + std::to_string(at_most);
+  if (!node_.IsSequence()) refuse_value("a list of " + count);
+  if (node_.size() < at_least || node_.size() > at_most) {
+    refuse("has " + std::to_string(node_.size()) + " entries, must have " + count);
+  }
+  std::vector<Value> values;
+  values.reserve(node_.size());
+  for (const YAML::Node& node : node_) {
+    values.push_back({file_, path_ + "[" + std::to_string(values.size()) + "]", node});
+  }
+  return values;
+}
+
+Vector3 Value::vector(const Bounds& bounds) const {
+  const std::vector<Value> values = list(3, 3);
+  return {values[0].number(bounds), values[1].number(bounds), values[2].number(bounds)};
+}
+
+Pose Value::pose() const {
+  const Map map(*this, {"position_m", "rotation_rad"});
+  Pose pose;
+  pose.position_m = map.at("position_m").vector(within(kPositionMax_m));
+  if (const auto rotation = map.find("rotation_rad")) {
+    pose.orientation = rotation_of(rotation->vector(within(kRotationMax_rad)));
+  }
+  return pose;
+}
+
+std::optional<Value> Value::peek(std::string_view key) const {
+  if (!node_.IsMap()) return std::nullopt;
+  for (const auto& pair : node_) {
+    if (!pair.first.IsScalar() || pair.first.Scalar() != key) continue;
+    return Value(file_, (path_.empty() ? "" : path_ + ".") + std::string(key), pair.second);
+  }
+  return std::nullopt;
+}
+
+Map::Map(const Value& value, std::initializer_list<std::string_view> keys) : value_(value) {
+  if (!value.node_.IsMap()) {
+    value.refuse_value("a mapping with the keys " + joined(keys));
+  }
+  for (const auto& pair : value.node_) {
+    const std::string key = pair.first.IsScalar() ? pair.first.Scalar() : "?";
+    const Value key_value(value.file_, (value.path_.empty() ? "" : value.path_ + ".") + key,
+                          pair.first);
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+      key_value.refuse("is an unknown key, known here: " + joined(keys));
+    }
+    if (find(key)) key_value.refuse("is given twice");
+    // An empty value is refused by whoever reads it, at the line of its key.
+    entries_.push_back({key, Value(value.file_, key_value.path_, pair.second)});
+  }
+}
+
+Value Map::at(std::string_view key) const {
+  if (auto value = find(key)) return *std::move(value);
+  value_.refuse("the required key " + std::string(key) + " is missing");
+}
+
+std::optional<Value> Map::find(std::string_view key) const {
+  for (const Entry& entry : entries_) {
+    if (entry.key == key) return entry.value;
+  }
+  return std::nullopt;
+}
+
+double Map::number(std::string_view key, const Bounds& bounds) const {
+  return at(key).number(bounds);
+}
+
+void Map::optional_number(std::string_view key, const Bounds& bounds, double& value) const {
+  if (const auto found = find(key)) value = found->number(bounds);
+}
+
+}  // namespace tenon::config

@@ -1,0 +1,42 @@
+#pragma once
+// Turns wrench samples into a contact signature: hysteresis and debounce for every bit.
+
+#include <array>
+#include <cstdint>
+
+#include "shared/math/pose.h"
+#include "shared/motion/contact_signature.h"
+#include "shared/motion/move_parameters.h"
+
+namespace tenon {
+
+/// Real-time: no allocation, a few comparisons a sample. The wrench is the external one: what the
+/// environment does to the tool, in the task frame's axes at the tool tip.
+///
+/// A bit is gained while its component is above the on-threshold and the largest of the three
+/// forces (or torques): an impact's friction, up to the coefficient of friction times the push,
+/// would otherwise pass for a second contact. A bit is lost while its component is below the
+/// off-threshold.
+class ContactDetector {
+ public:
+  ContactDetector(const ContactThresholds& thresholds, std::uint8_t watched_axes,
+                  ContactSignature initial);
+
+  /// One fresh sample. @param time_ns when it was measured, increasing.
+  void update(std::int64_t time_ns, const Vector6& wrench);
+
+  [[nodiscard]] ContactSignature signature() const { return signature_; }
+  /// Bits that are not set and whose last fresh sample was above the on-threshold.
+  [[nodiscard]] ContactSignature candidates() const { return candidates_; }
+
+ private:
+  ContactThresholds thresholds_;
+  std::uint8_t watched_axes_;
+  ContactSignature signature_;
+  ContactSignature candidates_;
+  /// Bits that have disagreed with the signature since since_ns_.
+  ContactSignature pending_;
+  std::array<std::int64_t, ContactSignature::kBits> since_ns_{};
+};
+
+}  // namespace tenon

@@ -1,0 +1,132 @@
+#pragma once
+// The guarded move: the one piece of code that plans and executes are made of.
+//
+// Planner rollouts step it against simulated wrenches, the executor against measured ones. What it
+// does depends on nothing but its arguments: a recorded trace of inputs replayed into a new
+// GuardedMove gives the same outputs bit for bit.
+//
+//            candidate bit                candidate gone
+//   kMoving ----------------> kProbing ------------------> kMoving (the rest of the path)
+//      |                          |
+//      |  outcome                 | bit confirmed: contact
+//      +-----------+--------------+
+//                  v
+//             kSettling -- at rest, or bounded --> kDone
+//
+// The plant between setpoint and pose (an ODE rollout, or an admittance law in front of drives)
+// realises Compliance; the move itself never looks at the spring's own force.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "shared/math/pose.h"
+#include "shared/motion/contact_detector.h"
+#include "shared/motion/motion_profile.h"
+#include "shared/motion/move_parameters.h"
+#include "shared/motion/outcome.h"
+
+namespace tenon {
+
+/// Real-time: no allocation, no clock, no lock; bounded work an update.
+class GuardedMove {
+ public:
+  struct Input {
+    std::int64_t time_ns = 0;          ///< strictly increasing
+    Pose pose;                         ///< measured tool pose
+    Vector6 wrench = Vector6::Zero();  ///< external, task axes at the tool, N and Nm
+    bool wrench_fresh = true;          ///< a new sensor sample, not the last one again
+  };
+
+  struct Setpoint {
+    Pose pose;
+    Vector6 velocity = Vector6::Zero();      ///< m/s, rad/s
+    Vector6 acceleration = Vector6::Zero();  ///< m/s^2, rad/s^2
+  };
+
+  struct Result {
+    Outcome outcome = Outcome::kTimeout;
+    ContactSignature signature;           ///< settled
+    Pose pose;                            ///< settled
+    Vector6 travelled = Vector6::Zero();  ///< from the first pose to the settled one
+    std::int64_t decided_ns = 0;          ///< when the outcome fired, since the start
+    std::int64_t duration_ns = 0;         ///< settling included
+    double peak_force_N = 0.0;            ///< largest |force| over fresh samples
+  };
+
+  enum class Phase : std::uint8_t { kMoving, kProbing, kSettling, kDone };
+
+  struct Output {
+    Setpoint setpoint;
+    Phase phase = Phase::kMoving;
+  };
+
+  /// @param parameters must satisfy check_thresholds() (shared/motion/rules.h)
+  /// @param signature the contacts that the tool holds as the move starts
+  GuardedMove(const MoveParameters& parameters, ContactSignature signature);
+
+  /// One step. The first call sets the start pose and time. After kDone the setpoint holds.
+  Output update(const Input& input);
+
+  [[nodiscard]] Phase phase() const { return phase_; }
+  /// Set once, when the phase becomes kDone.
+  [[nodiscard]] const std::optional<Result>& result() const { return result_; }
+  /// The contacts as they stand now.
+  [[nodiscard]] ContactSignature signature() const { return detector_.signature(); }
+
+  /// The setpoint that a tool at rest has: its pose, pressed by the keep force into every contact
+  /// that the signature holds.
+  [[nodiscard]] static Pose rest_setpoint(const Pose& pose, ContactSignature signature,
+                                          const MoveParameters& parameters);
+
+ private:
+  struct Moment {
+    std::int64_t time_ns = 0;
+    Pose pose;
+  };
+
+  void start(const Input& input);
+  void plan_path(std::int64_t time_ns, double from);
+  void enter_probing(const Input& input);
+  void enter_settling(const Input& input, Outcome outcome);
+  void move(const Input& input);
+  void probe(const Input& input);
+  void settle(const Input& input);
+  [[nodiscard]] Pose clamped(const Pose& setpoint, const Pose& pose, bool& active) const;
+  [[nodiscard]] ContactSignature watched(ContactSignature bits) const;
+  [[nodiscard]] bool slower_than(double speed_mps, double speed_radps) const;
+  void remember(const Input& input);
+
+  MoveParameters parameters_;
+  ContactDetector detector_;
+  ContactSignature initial_;
+  /// Bits that the move pushes away from: they neither trigger by going nor by coming back.
+  ContactSignature leaving_;
+  Vector6 displacement_ = Vector6::Zero();  ///< without what would push into a held contact
+  double length_ = 0.0;                     ///< of displacement_, m (rad if it only rotates)
+
+  Phase phase_ = Phase::kMoving;
+  bool started_ = false;
+  Moment first_;
+  Pose rest_;  ///< setpoint at the first pose
+  Setpoint setpoint_;
+  MotionProfile profile_;
+  std::int64_t profile_start_ns_ = 0;
+  double profile_from_ = 0.0;  ///< path already behind the profile's start
+  double path_ = 0.0;          ///< path covered by the command
+  std::int64_t pressed_since_ns_ = -1;
+  std::int64_t settling_since_ns_ = 0;
+  int settling_samples_ = 0;
+  ContactSignature pressing_;  ///< the contacts that the settling setpoint presses into
+  Outcome outcome_ = Outcome::kTimeout;
+  double peak_force_N_ = 0.0;
+  std::optional<Result> result_;
+
+  /// The last poses, to tell rest from motion through encoder quantisation.
+  static constexpr std::size_t kMemory = 64;
+  std::array<Moment, kMemory> memory_{};
+  std::size_t remembered_ = 0;
+};
+
+}  // namespace tenon

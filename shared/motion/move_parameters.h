@@ -1,0 +1,72 @@
+#pragma once
+// Everything that decides how a guarded move runs and when it ends. The plan file carries these.
+
+#include <cstdint>
+
+#include "shared/math/pose.h"
+#include "shared/motion/contact_signature.h"
+
+namespace tenon {
+
+/// M (x'' - xs'') + D (x' - xs') + K (x - xs) = f, the same for every compliant translation, and
+/// the same law for every compliant rotation about the tool tip.
+struct Compliance {
+  double mass_kg = 2.0;
+  double damping_Nspm = 1500.0;
+  double stiffness_Npm = 1000.0;
+  double inertia_kgm2 = 0.02;
+  double damping_Nmspr = 2.0;
+  double stiffness_Nmpr = 20.0;
+  /// Bit a (0..5: x y z rx ry rz): the axis yields. The others follow the setpoint rigidly, feel
+  /// nothing, and carry no contact bits.
+  std::uint8_t compliant_axes = 0x3F;
+
+  friend bool operator==(const Compliance&, const Compliance&) = default;
+};
+
+/// Hysteresis of the contact bits, forces and torques apart: off < keep < on.
+struct ContactThresholds {
+  double force_on_N = 6.0;
+  double force_keep_N = 3.0;
+  double force_off_N = 1.5;
+  double torque_on_Nm = 0.6;
+  double torque_keep_Nm = 0.3;
+  double torque_off_Nm = 0.15;
+  /// A bit changes after fresh samples have agreed for this long.
+  std::uint32_t debounce_us = 6000;
+
+  friend bool operator==(const ContactThresholds&, const ContactThresholds&) = default;
+};
+
+/// Limits of the command along the straight path of a move.
+struct SpeedLimits {
+  double approach_mps = 0.10;
+  double contact_mps = 0.05;
+  double acceleration_mps2 = 1.0;
+  double jerk_mps3 = 20.0;
+  double approach_radps = 0.5;
+  double contact_radps = 0.2;
+  double acceleration_radps2 = 5.0;
+  double jerk_radps3 = 100.0;
+
+  friend bool operator==(const SpeedLimits&, const SpeedLimits&) = default;
+};
+
+/// One guarded move. Displacement in the task frame's axes at the tool tip.
+struct MoveParameters {
+  Vector6 displacement = Vector6::Zero();
+  /// Distance from the start at which the command is down to contact speed, m of translation (rad
+  /// where the displacement has no translation). 0: contact speed all the way.
+  double slow_from_m = 0.0;
+  SpeedLimits speeds;
+  ContactThresholds thresholds;
+  Compliance compliance;
+  /// The spring may pull no harder than this on any axis.
+  double force_limit_N = 20.0;
+  double torque_limit_Nm = 2.0;
+  std::uint32_t timeout_us = 10'000'000;
+  /// Only changes of these bits end the move.
+  ContactSignature trigger_mask = kAllContacts;
+};
+
+}  // namespace tenon

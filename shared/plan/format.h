@@ -1,0 +1,28 @@
+#pragma once
+// The numbers of FORMAT.md that encoder and decoder share. Private to this folder.
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "shared/plan/plan.h"
+
+namespace tenon::plan_format {
+
+inline constexpr std::uint32_t kMagic = 0x1A504E54;  // "TNP" and an end-of-file character
+inline constexpr std::uint16_t kVersion = 1;
+inline constexpr std::uint8_t kFlagCheckEnvelopes = 0x01;
+inline constexpr std::size_t kHeaderSize = 205;  // without the two names' text
+inline constexpr std::size_t kSetSize = 66;
+inline constexpr std::size_t kChecksumSize = 4;
+inline constexpr std::size_t kNameMax = 63;
+inline constexpr std::size_t kParameterSetsMax = 200;
+
+inline std::size_t axes_in(CoordinateMask coordinates) {
+  return static_cast<std::size_t>(std::popcount(coordinates));
+}
+inline std::size_t step_size(CoordinateMask coordinates) { return 6 + 4 * axes_in(coordinates); }
+inline std::size_t outcome_size(CoordinateMask coordinates) { return 5 + 8 * axes_in(coordinates); }
+inline bool in(CoordinateMask coordinates, int axis) { return (coordinates >> axis & 1U) != 0; }
+
+}  // namespace tenon::plan_format

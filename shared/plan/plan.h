@@ -1,0 +1,87 @@
+#pragma once
+// A plan: guarded moves, and for every outcome of each where to go on. FORMAT.md has its bytes.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "shared/math/pose.h"
+#include "shared/motion/move_parameters.h"
+#include "shared/motion/outcome.h"
+
+namespace tenon {
+
+/// Bit a (0..5: x y z rx ry rz).
+using CoordinateMask = std::uint8_t;
+
+/// Where an outcome leads: a step index, or one of the two ends.
+using Successor = std::uint8_t;
+inline constexpr Successor kSuccessorDone = 0xFE;
+inline constexpr Successor kSuccessorFail = 0xFF;
+inline constexpr std::size_t kMaxSteps = 200;
+
+/// What validation saw of an outcome, widened by sensor and latency margins.
+struct Envelope {
+  Vector6 travelled_min = Vector6::Zero();  ///< m, rad; zero off the plan's coordinates
+  Vector6 travelled_max = Vector6::Zero();
+  ContactSignature always;    ///< bits that every settled signature had
+  ContactSignature possible;  ///< bits that some settled signature had
+};
+
+struct OutcomeRule {
+  Successor successor = kSuccessorFail;
+  /// Meaningful only where successor is not kSuccessorFail.
+  Envelope envelope;
+};
+
+/// Parameters that steps share; stored once a set.
+struct ParameterSet {
+  SpeedLimits speeds;
+  ContactThresholds thresholds;
+  std::uint32_t timeout_us = 10'000'000;
+  ContactSignature trigger_mask = kAllContacts;
+
+  friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
+};
+
+struct Step {
+  Vector6 displacement = Vector6::Zero();  ///< zero off the plan's coordinates
+  double slow_from_m = 0.0;
+  std::uint8_t parameter_set = 0;
+  std::array<OutcomeRule, kOutcomes.size()> outcomes;  ///< by Outcome
+
+  [[nodiscard]] const OutcomeRule& rule(Outcome outcome) const {
+    return outcomes[static_cast<std::size_t>(outcome)];
+  }
+};
+
+/// All doubles that the file holds as 32-bit floats come back as the value of the float. What is
+/// planned, certified and executed is what was decoded.
+struct Plan {
+  std::string task_name;   ///< at most 63 bytes
+  std::string start_name;  ///< at most 63 bytes
+  std::uint64_t task_hash = 0;
+  CoordinateMask coordinates = 0;
+  Pose start;  ///< nominal, tool in task frame
+  Pose goal;
+  double goal_tolerance_m = 0.0;  ///< d_tol of the task
+  Compliance compliance;
+  double force_limit_N = 20.0;
+  double torque_limit_Nm = 2.0;
+  double contact_stiffness_Npm = 5e4;  ///< that it was certified with
+  double latency_max_s = 0.0;          ///< the plan holds for (n + 1/2) T + tau_arm up to this
+  double cost = 0.0;
+  double bound = 0.0;       ///< cost <= bound times the optimum of the searched graph; 0: none
+  std::uint32_t draws = 0;  ///< of validation
+  std::uint32_t draws_at_goal = 0;
+  bool check_envelopes = true;  ///< false: outcomes alone decide (baseline planners)
+  std::vector<ParameterSet> parameter_sets;
+  std::vector<Step> steps;
+};
+
+/// The guarded move of a step. Planner and executor both get their moves here.
+[[nodiscard]] MoveParameters move_parameters(const Plan& plan, std::size_t step);
+
+}  // namespace tenon

@@ -1,0 +1,30 @@
+#pragma once
+// From a finished move to the next step: the same decision in certification and in execution.
+
+#include <cstdint>
+
+#include "shared/motion/guarded_move.h"
+#include "shared/plan/plan.h"
+
+namespace tenon {
+
+enum class Deviation : std::uint8_t {
+  kNone = 0,
+  kUnexpectedOutcome = 1,  ///< the plan has no way on from this outcome
+  kTravelOutside = 2,      ///< the displacement is outside the envelope
+  kContactMissing = 3,     ///< the settled signature lacks a bit that validation always saw
+  kContactUnforeseen = 4,  ///< it has one that validation never saw
+};
+
+struct Transition {
+  Successor successor = kSuccessorFail;
+  Deviation deviation = Deviation::kNone;
+  /// For kTravelOutside: the axis, 0..5. For the contact deviations: the bit, 0..11.
+  int index = -1;
+};
+
+/// Real-time. A deviation always leads to kSuccessorFail.
+[[nodiscard]] Transition transition(const Plan& plan, std::size_t step,
+                                    const GuardedMove::Result& result);
+
+}  // namespace tenon

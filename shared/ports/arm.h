@@ -1,0 +1,100 @@
+#pragma once
+// The executor's view of a robot: joints that follow position setpoints, and a wrench at a sensor.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "shared/math/pose.h"
+
+namespace tenon {
+
+inline constexpr std::size_t kMaxJoints = 7;
+/// Per joint; rad, or m for a linear axis.
+using JointVector = std::array<double, kMaxJoints>;
+
+/// What an arm is asked to be.
+enum class ArmRequest : std::uint8_t {
+  kDisabled = 0,   ///< drives off, brakes on
+  kEnabled = 1,    ///< following position setpoints
+  kQuickStop = 2,  ///< ramp down by the drives themselves, then hold
+};
+
+/// What an arm is.
+enum class ArmState : std::uint8_t {
+  kUnconfigured = 0,  ///< prepare() is not finished
+  kDisabled = 1,
+  kEnabling = 2,
+  kEnabled = 3,
+  kStopping = 4,  ///< quick stop, or disabling
+  kFault = 5,     ///< see ArmFault; a new prepare() starts over
+};
+
+enum class ArmFaultKind : std::uint8_t {
+  kNone = 0,
+  kNoAnswer = 1,         ///< a node did not answer in configuration
+  kConfiguration = 2,    ///< a node refused or did not keep a setting
+  kHeartbeatLost = 3,    ///< a node fell silent
+  kUnexpectedReset = 4,  ///< boot-up from a running node
+  kDriveFault = 5,       ///< statusword fault; code is its error code
+  kDriveState = 6,       ///< a drive left operation enabled unasked
+  kFeedbackMissing = 7,  ///< too many cycles without a joint's feedback
+  kSensorStale = 8,      ///< too many cycles without a wrench
+  kSensorInvalid = 9,    ///< saturated, torn or self-reported fault
+  kBusDown = 10,
+  kBusOff = 11,
+};
+
+/// Plain data, so that real-time code can carry it. describe() in hw gives the line for people.
+struct ArmFault {
+  ArmFaultKind kind = ArmFaultKind::kNone;
+  std::uint8_t node = 0;     ///< CANopen node, 0 where none is meant
+  std::uint32_t object = 0;  ///< index << 8 | sub-index of the object concerned, or 0
+  std::uint32_t code = 0;    ///< EMCY or error code, SDO abort code, or statusword
+};
+
+struct ArmFeedback {
+  std::int64_t sync_ns = 0;  ///< the cycle that this belongs to
+  JointVector position{};
+  JointVector effort{};            ///< N or Nm
+  std::uint32_t joints_fresh = 0;  ///< bit i: joint i answered this cycle
+  Vector6 wrench =
+      Vector6::Zero();        ///< what acts on the load beyond the sensor, in sensor axes, raw
+  bool wrench_fresh = false;  ///< a new, whole sample
+  std::uint16_t wrench_counter = 0;
+  ArmState state = ArmState::kUnconfigured;
+  ArmFault fault;
+};
+
+/// Real-time but for prepare(): no allocation, no throw, no clock; time is an argument. A cycle is
+/// start_cycle(), receive() until it returns true or the deadline passes, command(). One thread.
+class Arm {
+ public:
+  Arm() = default;
+  Arm(const Arm&) = delete;
+  Arm& operator=(const Arm&) = delete;
+  virtual ~Arm() = default;
+
+  [[nodiscard]] virtual std::size_t joint_count() const noexcept = 0;
+
+  /// Configures the devices; call it repeatedly, about every millisecond, until it says true.
+  /// False and state kFault: it failed, see fault(). Not real-time.
+  [[nodiscard]] virtual bool prepare(std::int64_t now_ns) = 0;
+
+  /// Opens a control cycle (SYNC leaves here).
+  virtual void start_cycle(std::int64_t now_ns) noexcept = 0;
+  /// Takes in what has arrived. True once everything that this cycle expects is there.
+  [[nodiscard]] virtual bool receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept = 0;
+  /// Closes the cycle: setpoints and state request leave for the drives, heartbeat when due. While
+  /// the drives are not enabled the positions are ignored and the actual ones are sent.
+  virtual void command(std::int64_t now_ns, ArmRequest request,
+                       const JointVector& position) noexcept = 0;
+
+  /// Waits for the bus, at most so long. Returns at once in lockstep.
+  virtual void wait(std::int64_t at_most_ns) noexcept = 0;
+
+  [[nodiscard]] virtual ArmState state() const noexcept = 0;
+  [[nodiscard]] virtual ArmFault fault() const noexcept = 0;
+};
+
+}  // namespace tenon

@@ -1,0 +1,68 @@
+#pragma once
+// The planner's view of physics: one guarded move of one particle.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "shared/math/pose.h"
+#include "shared/motion/guarded_move.h"
+
+namespace tenon {
+
+/// Values of the uncertain physical parameters.
+struct PhysicalParameters {
+  double friction = 0.3;
+  double contact_stiffness_Npm = 5e4;
+
+  friend bool operator==(const PhysicalParameters&, const PhysicalParameters&) = default;
+};
+
+/// A particle: a tool at rest. Pose and signature determine its setpoint.
+struct Particle {
+  Pose pose;  ///< tool in the task frame
+  ContactSignature signature;
+  PhysicalParameters physics;
+
+  friend bool operator==(const Particle&, const Particle&) = default;
+};
+
+/// One instant of a rollout, as a recording of the executor has it.
+struct TraceSample {
+  GuardedMove::Input input;
+  GuardedMove::Setpoint setpoint;
+};
+
+struct RolloutResult {
+  /// False: the simulation itself failed (solver messages, not at rest, tunnelling) and the rest
+  /// means nothing. `failure` says why.
+  bool valid = false;
+  std::string failure;
+  GuardedMove::Result move;
+  /// Which held shape touches which environment shape at the end, for people to look at.
+  std::vector<std::string> touching;
+};
+
+/// Deterministic: equal arguments give equal results, bit for bit, in any instance, in any order,
+/// on any thread. An instance is used by one thread at a time.
+class Rollout {
+ public:
+  Rollout() = default;
+  Rollout(const Rollout&) = delete;
+  Rollout& operator=(const Rollout&) = delete;
+  virtual ~Rollout() = default;
+
+  /// @param step_us integration step  @param trace filled with every instant where not null
+  [[nodiscard]] virtual RolloutResult simulate(const Particle& particle, const MoveParameters& move,
+                                               std::int64_t step_us,
+                                               std::vector<TraceSample>* trace = nullptr) = 0;
+
+  /// Whether the held part at this tool pose overlaps the environment.
+  [[nodiscard]] virtual bool in_collision(const Pose& tool_pose) = 0;
+
+  /// Another instance for another thread.
+  [[nodiscard]] virtual std::unique_ptr<Rollout> clone() const = 0;
+};
+
+}  // namespace tenon

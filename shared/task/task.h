@@ -1,0 +1,76 @@
+#pragma once
+// An assembly problem: what planner/tasks/*.yaml say. Loading stands in shared/config.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "shared/math/pose.h"
+#include "shared/motion/move_parameters.h"
+#include "shared/plan/plan.h"
+
+namespace tenon {
+
+struct Range {
+  double low = 0.0;
+  double nominal = 0.0;
+  double high = 0.0;
+};
+
+/// A rigid piece of the held part or of the environment.
+struct Shape {
+  enum class Kind : std::uint8_t { kBox, kCylinder };
+  std::string name;
+  Kind kind = Kind::kBox;
+  Vector3 size_m =
+      Vector3::Zero();  ///< box: edge lengths; cylinder: diameter, diameter, length along z
+  Pose pose;            ///< of its centre, in the tool frame (held) or the task frame
+};
+
+/// A named nominal start.
+struct Start {
+  std::string name;
+  Pose pose;                        ///< tool in task frame
+  Vector6 sigma = Vector6::Zero();  ///< standard deviation a coordinate, m or rad; 0 off the search
+};
+
+struct Task {
+  std::string name;
+  std::uint64_t hash = 0;  ///< of the file's bytes
+  CoordinateMask coordinates = 0;
+  std::vector<Shape> held;
+  std::vector<Shape> environment;
+  std::vector<Start> starts;
+  double particle_sigmas = 2.0;  ///< c_p: how many standard deviations out the particles sit
+
+  Pose goal;
+  double goal_tolerance_m = 2e-3;     ///< d_tol
+  double goal_uncertainty_m2 = 2e-6;  ///< u_tol
+
+  // Primitives.
+  double step_m = 0.10;
+  double step_rad = 0.1;
+  double long_step_m = 1.0;     ///< for the attractor search
+  double direct_reach_m = 0.3;  ///< the mean-to-goal primitive exists within this distance
+
+  ParameterSet motion;
+  Compliance compliance;
+  double force_limit_N = 20.0;
+  double torque_limit_Nm = 2.0;
+
+  // Search.
+  double w1 = 2.0;
+  double w2 = 2.0;
+  double distance_weight_per_m = 5e3;        ///< w_d
+  double uncertainty_weight_per_m2 = 2.5e6;  ///< w_u
+  double position_weight = 1.0;              ///< w_p
+  double orientation_weight = 0.1;           ///< w_o, m per rad
+  double attractor_ratio = 0.6;              ///< c_u
+  double time_limit_s = 60.0;
+
+  Range friction{0.1, 0.3, 0.6};
+  double contact_stiffness_Npm = 5e4;
+  std::int64_t rollout_step_us = 2000;
+};
+
+}  // namespace tenon

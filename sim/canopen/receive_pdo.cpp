@@ -1,0 +1,34 @@
+#include "sim/canopen/receive_pdo.h"
+
+namespace tenon::sim {
+
+ReceivePdo::Result ReceivePdo::receive(const CanFrame& frame) {
+  if (!parameters_.valid() || frame.id != parameters_.cob_id()) return Result::kNotMine;
+  if (frame.length < parameters_.total_bytes()) return Result::kTooShort;
+  if (parameters_.synchronous()) {
+    waiting_ = frame;
+  } else {
+    act(frame);
+  }
+  return Result::kTaken;
+}
+
+void ReceivePdo::on_sync() {
+  if (!waiting_) return;
+  act(*waiting_);
+  waiting_.reset();
+}
+
+void ReceivePdo::act(const CanFrame& frame) {
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < parameters_.mapped_count(); ++i) {
+    if (const ObjectEntry* entry = parameters_.mapped(i); entry != nullptr) {
+      // A value that the object refuses is dropped, as by a drive.
+      static_cast<void>(
+          dictionary_.write(parameters_.mapped_id(i), from_bytes(entry->type, &frame.data[at])));
+    }
+    at += parameters_.bytes(i);
+  }
+}
+
+}  // namespace tenon::sim

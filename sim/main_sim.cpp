@@ -1,0 +1,187 @@
+// tenon-sim: the virtual arm on its own clock. It answers on CAN like a real cell; what it knows
+// beyond that goes to the truth file alone.
+
+#include <sched.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hw/can/monotonic_clock.h"
+#include "hw/can/open_bus.h"
+#include "hw/can/slcan_server.h"
+#include "shared/base/error.h"
+#include "shared/config/command_line.h"
+#include "shared/config/load.h"
+#include "sim/virtual_arm/environment_offset.h"
+#include "sim/virtual_arm/virtual_cell.h"
+
+namespace {
+
+using namespace tenon;
+
+constexpr std::int64_t kTick_ns = 1'000'000;
+constexpr std::int64_t kLate_ns = 1'000'000;
+constexpr std::int64_t kSettled_ns = 1'000'000'000;
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+struct CommandLine {
+  std::string cell;
+  std::string task;
+  std::string can;
+  std::string start;
+  std::optional<std::uint64_t> seed;
+  std::string offset;
+  std::string json;
+  std::string ready_file;
+  bool once = false;
+};
+
+/// Ends a run that was asked to serve one client: it came, it went, and the arm has come to rest.
+class OneClient {
+ public:
+  [[nodiscard]] bool finished(bool connected, bool standstill, std::int64_t now_ns) {
+    seen_ = seen_ || connected;
+    if (connected || !standstill || !seen_) rest_since_ns_ = now_ns;
+    return now_ns - rest_since_ns_ > kSettled_ns;
+  }
+
+ private:
+  bool seen_ = false;
+  std::int64_t rest_since_ns_ = 0;
+};
+
+struct Lateness {
+  std::uint64_t wakes = 0;
+  std::uint64_t late = 0;
+  std::int64_t max_ns = 0;
+
+  void count(std::int64_t late_ns) {
+    ++wakes;
+    if (late_ns > kLate_ns) ++late;
+    max_ns = std::max(max_ns, late_ns);
+  }
+};
+
+Lateness run(sim::VirtualCell& cell, CanBus& bus, const hw::SlcanServer* server) {
+  Lateness lateness;
+  OneClient one_client;
+  std::int64_t due_ns = hw::monotonic_now_ns();
+  while (stop_requested == 0) {
+    const std::int64_t now_ns = hw::monotonic_now_ns();
+    if (now_ns >= due_ns) {
+      lateness.count(now_ns - due_ns);
+      due_ns += kTick_ns * ((now_ns - due_ns) / kTick_ns + 1);
+    }
+    cell.step(now_ns, bus);
+    if (server != nullptr &&
+        one_client.finished(server->clients() > 0, cell.at_standstill(), now_ns)) {
+      break;
+    }
+    bus.wait(std::max<std::int64_t>(0, due_ns - hw::monotonic_now_ns()));
+  }
+  return lateness;
+}
+
+void announce(const CommandLine& line, const CanBus& bus) {
+  const std::uint16_t port = hw::listening_port(bus);
+  std::string where = line.can;
+  if (port != 0) {
+    const std::string address = where.substr(where.find("//") + 2);
+    where = address.substr(0, address.rfind(':')) + ":" + std::to_string(port);
+  }
+  const std::string text = (port != 0 ? "listening on " : "on ") + where + "\n";
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+  if (!line.ready_file.empty()) write_file(line.ready_file, text);
+}
+
+/// Below an executor's priority, so that on a shared core the simulated drives wait for it. Where
+/// the system refuses, the arm runs all the same, and says how late it was.
+void raise_priority() {
+  sched_param parameters{};
+  parameters.sched_priority = 40;
+  static_cast<void>(::sched_setscheduler(0, SCHED_FIFO, &parameters));
+}
+
+int simulate(const CommandLine& line) {
+  const Cell cell_file = load_cell(line.cell);
+  const Task task = load_task(line.task);
+  sim::VirtualCell::Options options;
+  options.start = line.start;
+  options.seed = line.seed.value_or(0);
+  if (!line.offset.empty()) options.offset = sim::parse_offset(line.offset, task.coordinates);
+  if (line.seed) {
+    const Start& start = sim::find_start(task, line.start);
+    options.offset = sim::draw_offset(start, task.coordinates, *line.seed);
+    std::printf("seed %llu\n", static_cast<unsigned long long>(*line.seed));
+  }
+  if (!line.json.empty()) check_writable(line.json);
+  sim::VirtualCell cell(cell_file, task, options);
+
+  const std::unique_ptr<CanBus> bus = hw::open_bus(line.can, cell_file.robot.bitrate_bps);
+  const auto* server = dynamic_cast<const hw::SlcanServer*>(bus.get());
+  if (line.once && server == nullptr) {
+    throw InputError("--once: needs a bus with clients, such as --can slcan-listen://127.0.0.1:0");
+  }
+  raise_priority();
+  announce(line, *bus);
+  const Lateness lateness = run(cell, *bus, line.once ? server : nullptr);
+
+  sim::Truth truth = cell.truth();
+  truth.wakes = lateness.wakes;
+  truth.wakes_late = lateness.late;
+  truth.late_max_ms = static_cast<double>(lateness.max_ns) * 1e-6;
+  if (!line.json.empty()) write_file(line.json, sim::truth_json(truth));
+  std::fputs(sim::describe(truth).c_str(), stdout);
+  std::printf("simulated %.1f s; woke late by more than 1 ms %llu of %llu times, worst %.2f ms\n",
+              truth.time_s, static_cast<unsigned long long>(truth.wakes_late),
+              static_cast<unsigned long long>(truth.wakes), truth.late_max_ms);
+  if (truth.solver_messages == 0) return 0;
+  std::fprintf(stderr, "tenon-sim: the physics solver gave up %llu times; do not trust this run\n",
+               static_cast<unsigned long long>(truth.solver_messages));
+  return 1;
+}
+
+void stop(int /*signal*/) { stop_requested = 1; }
+
+int parse_and_simulate(int argc, char** argv) {
+  CommandLine line;
+  CLI::App app{
+      "The virtual arm: drives, sensor and physics behind a CAN bus, on their own clock.\n"
+      "Example: tenon-sim --cell hw/cells/gantry3.yaml --task planner/tasks/box_on_table_2d.yaml\n"
+      "                   --can slcan-listen://127.0.0.1:29536 --start 7 --seed 1 --json "
+      "truth.json",
+      "tenon-sim"};
+  app.set_version_flag("--version", TENON_VERSION);
+  app.add_option("--cell", line.cell, "cell file")->required();
+  app.add_option("--task", line.task, "task file: held part, environment, starts")->required();
+  app.add_option("--can", line.can, "bus; slcan-listen://HOST:PORT serves it, port 0: a free one")
+      ->required();
+  app.add_option("--start", line.start, "where the tool stands; default: the task's first start");
+  CLI::Option* seed = app.add_option(
+      "--seed", line.seed, "draws how far the environment is off, and the sensor's noise");
+  constexpr double kSeedMax = 9007199254740992.0;  // what a JSON reader keeps exactly, 2^53
+  seed->check(CLI::Range(0.0, kSeedMax).description("[0, 2^53]"));
+  app.add_option("--offset", line.offset, "how far the environment is off: x_m=0.02,y_m=-0.01")
+      ->excludes(seed);
+  app.add_option("--json", line.json, "file for the truth, written whole at the end");
+  app.add_option("--ready-file", line.ready_file, "file that appears when the bus is open");
+  app.add_flag("--once", line.once, "end when the client has gone and the arm is at rest");
+  parse(app, argc, argv);
+  std::signal(SIGINT, stop);
+  std::signal(SIGTERM, stop);
+  return simulate(line);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run_main("tenon-sim", [&] { return parse_and_simulate(argc, argv); });
+}

@@ -1,0 +1,74 @@
+#pragma once
+// The shapes of a task as ODE geometry, and the contacts between them. Private to sim.
+
+#include <ode/ode.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shared/math/pose.h"
+#include "shared/task/task.h"
+#include "sim/ode/ode_world.h"
+
+namespace tenon::sim {
+
+/// How two surfaces meet. Stiffness and damping are those of a whole face: they are shared out
+/// among the contact points of a pair of shapes.
+struct Surface {
+  double friction = 0.3;
+  double stiffness_Npm = 5e4;
+  double damping_Nspm = 100.0;
+};
+
+/// Contact geometry of the held part against the environment. Pairs are collided in a fixed order,
+/// so that the solver sees the same constraints in the same order whatever happened before.
+class Scene {
+ public:
+  /// @param X_WT where the environment's task frame stands in the world
+  Scene(const std::vector<Shape>& held, const std::vector<Shape>& environment,
+        const Pose& X_WT = {});
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+  ~Scene();
+
+  /// Hangs the held shapes on a body. @param X_BP the tool frame in the body's frame
+  void attach(dBodyID body, const Pose& X_BP = {});
+
+  struct Contacts {
+    std::size_t points = 0;
+    double depth_max_m = 0.0;
+  };
+  /// Makes this step's contact joints. Call before OdeWorld::step().
+  Contacts collide(OdeWorld& world, double step_s, const Surface& surface);
+
+  /// After the step: force and torque of the environment on the attached body, world axes, about
+  /// the body's origin.
+  [[nodiscard]] Vector6 wrench() const;
+
+  /// Deepest overlap at the body's present pose, m; 0 where nothing touches.
+  [[nodiscard]] double overlap_m() const;
+
+  /// The pairs of the last collide(), "held-environment", each once.
+  [[nodiscard]] std::vector<std::string> touching() const;
+
+ private:
+  struct Pair {
+    std::size_t held;
+    std::size_t environment;
+  };
+  static constexpr int kPointsAPair = 8;
+  static constexpr std::size_t kPoints = 64;
+
+  std::vector<std::string> held_names_;
+  std::vector<std::string> environment_names_;
+  std::vector<dGeomID> held_;
+  std::vector<Pose> held_offsets_;
+  std::vector<dGeomID> environment_;
+  std::vector<dJointFeedback> feedback_;
+  std::size_t points_ = 0;
+  std::vector<Pair> touching_;
+};
+
+}  // namespace tenon::sim

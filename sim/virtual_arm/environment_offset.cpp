@@ -1,0 +1,74 @@
+#include "sim/virtual_arm/environment_offset.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "shared/base/error.h"
+#include "sim/devices/normal_source.h"
+
+namespace tenon::sim {
+namespace {
+
+constexpr std::array<std::string_view, 6> kAxes = {"x_m",    "y_m",    "z_m",
+                                                   "rx_rad", "ry_rad", "rz_rad"};
+
+[[noreturn]] void refuse(const std::string& item, const std::string& why) {
+  throw InputError("--offset: \"" + item + "\" " + why + "; give it as x_m=0.02,y_m=-0.01");
+}
+
+}  // namespace
+
+Vector6 draw_offset(const Start& start, CoordinateMask coordinates, std::uint64_t seed) {
+  NormalSource source(seed);
+  Vector6 offset = Vector6::Zero();
+  for (int axis = 0; axis < 6; ++axis) {
+    // Every axis takes a number, so that an axis more leaves the draws of the others alone.
+    const double value = source.next();
+    if ((coordinates >> axis & 1U) != 0) offset[axis] = start.sigma[axis] * value;
+  }
+  return offset;
+}
+
+Vector6 parse_offset(const std::string& text, CoordinateMask coordinates) {
+  Vector6 offset = Vector6::Zero();
+  CoordinateMask seen = 0;
+  std::string_view rest = text;
+  while (true) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view item = rest.substr(0, comma);
+    const std::size_t equals = item.find('=');
+    const auto axis = std::find(kAxes.begin(), kAxes.end(), item.substr(0, equals));
+    if (equals == std::string_view::npos || axis == kAxes.end()) {
+      refuse(std::string(item), "must name one of x_m y_m z_m rx_rad ry_rad rz_rad and a value");
+    }
+    const auto index = axis - kAxes.begin();
+    const auto bit = static_cast<CoordinateMask>(1U << index);
+    if ((coordinates & bit) == 0) refuse(std::string(item), "is no search coordinate of the task");
+    if ((seen & bit) != 0) refuse(std::string(item), "stands there twice");
+    seen |= bit;
+    const std::string_view number = item.substr(equals + 1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (error != std::errc{} || end != number.data() + number.size() || !(std::abs(value) <= 1.0)) {
+      refuse(std::string(item), "must have a number in [-1, 1]");
+    }
+    offset[index] = value;
+    if (comma == std::string_view::npos) return offset;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
+const Start& find_start(const Task& task, const std::string& name) {
+  std::string names;
+  for (const Start& start : task.starts) {
+    if (name.empty() || start.name == name) return start;
+    names += (names.empty() ? "" : ", ") + start.name;
+  }
+  throw InputError("task " + task.name + ": start \"" + name +
+                   "\" does not exist, must be one of " + names);
+}
+
+}  // namespace tenon::sim

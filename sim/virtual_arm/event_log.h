@@ -1,0 +1,43 @@
+#pragma once
+// The virtual cell's time line of what matters, bounded. One thread.
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "shared/ports/can_bus.h"
+#include "sim/virtual_arm/truth.h"
+
+namespace tenon::sim {
+
+class EventLog {
+ public:
+  static constexpr std::size_t kEventsMax = 500;
+
+  /// @param time_ns since the cell was switched on
+  void add(std::int64_t time_ns, std::string what) {
+    if (events_.size() >= kEventsMax) return;
+    events_.push_back({static_cast<double>(time_ns) * 1e-9, std::move(what)});
+  }
+
+  void emergency(std::int64_t time_ns, const CanFrame& frame) {
+    const unsigned code = static_cast<unsigned>(frame.data[1]) << 8 | frame.data[0];
+    char text[64];
+    const char* meaning = code == 0x8130   ? " (heartbeat of the master lost)"
+                          : code == 0x8611 ? " (following error)"
+                          : code == 0x8210 ? " (PDO too short)"
+                          : code == 0      ? " (reset)"
+                                           : "";
+    std::snprintf(text, sizeof text, "node %u: emergency %04Xh%s", frame.id & 0x7FU, code, meaning);
+    add(time_ns, text);
+  }
+
+  [[nodiscard]] const std::vector<TruthEvent>& events() const { return events_; }
+
+ private:
+  std::vector<TruthEvent> events_;
+};
+
+}  // namespace tenon::sim

@@ -1,0 +1,26 @@
+#pragma once
+// The executables as a user runs them.
+
+#include <string>
+#include <vector>
+
+#include "tests/support/scratch_folder.h"
+
+namespace tenon::tests {
+
+/// What a command left behind.
+struct Ended {
+  int status = 0;  ///< minus the signal where one ended it
+  std::string out;
+  std::string err;
+};
+
+/// Runs a command to its end.
+[[nodiscard]] Ended run(const test::ScratchFolder& folder, const std::vector<std::string>& command);
+
+/// tenon-plan for a start of the box task on the gantry. @return the plan file in `folder`
+/// @throws std::runtime_error with its error where there is no plan
+[[nodiscard]] std::string plan_by_command(const test::ScratchFolder& folder,
+                                          const std::string& start);
+
+}  // namespace tenon::tests

@@ -1,0 +1,58 @@
+#include "tests/chain/planned.h"
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+
+#include "planner/planner.h"
+#include "shared/config/load.h"
+#include "sim/rollout/ode_rollout.h"
+
+namespace tenon::tests {
+namespace {
+
+std::filesystem::path tree() { return TENON_SOURCE_DIR; }
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Plan make(const std::string& start) {
+  planner::PlannerOptions options;
+  options.threads = 2;
+  options.assumptions.contact_stiffness_Npm = gantry_cell().contact_stiffness_Npm;
+  options.assumptions.latency_max_s = latency_s(gantry_cell().robot);
+  const sim::OdeRollout rollout(box_task());
+  const auto report = planner::make_plan(box_task(), box_start(start), rollout, options, now_s);
+  if (!report.plan) throw std::runtime_error("start " + start + ": " + report.reason);
+  return *report.plan;
+}
+
+}  // namespace
+
+const Task& box_task() {
+  static const Task task = load_task(tree() / "planner/tasks/box_on_table_2d.yaml");
+  return task;
+}
+
+const Cell& gantry_cell() {
+  static const Cell cell = load_cell(tree() / "hw/cells/gantry3.yaml");
+  return cell;
+}
+
+const Start& box_start(const std::string& name) {
+  for (const Start& start : box_task().starts) {
+    if (start.name == name) return start;
+  }
+  throw std::runtime_error("no start " + name);
+}
+
+const Plan& box_plan(const std::string& start) {
+  static std::map<std::string, Plan> plans;
+  auto found = plans.find(start);
+  if (found == plans.end()) found = plans.emplace(start, make(start)).first;
+  return found->second;
+}
+
+}  // namespace tenon::tests

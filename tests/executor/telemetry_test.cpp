@@ -1,0 +1,163 @@
+// What goes out over LCM, decoded with the generated types.
+
+#include "executor/telemetry.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <lcm/lcm-cpp.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "executor/recorder.h"
+#include "executor/run_result.h"
+#include "lcmtypes/tenon/cycle_state_t.hpp"
+#include "lcmtypes/tenon/run_summary_t.hpp"
+#include "lcmtypes/tenon/step_event_t.hpp"
+#include "shared/base/error.h"
+#include "tests/executor/bench.h"
+
+namespace tenon::executor {
+namespace {
+
+// Runs touch_and_slide_plan() and publishes it to the outputs, summary included.
+RunResult published_run(std::vector<std::shared_ptr<lcm::LCM>> outputs) {
+  const auto recorder = std::make_unique<Recorder>();
+  Bench bench(touch_and_slide_plan(), {}, hand_made_cell(), Vector3::Zero(), recorder.get());
+  bench.arm.walls.push_back({0, +1, 0.13});
+  Telemetry telemetry(std::move(outputs), bench.controller, *recorder);
+  recorder->add(telemetry);
+  bench.run([&] { recorder->drain(); });
+  recorder->drain();
+  const RunResult result = gather_result(bench.controller, bench.runner, 0, "");
+  telemetry.publish_summary(result, bench.controller.record());
+  EXPECT_EQ(telemetry.failures(), 0U);
+  return result;
+}
+
+TEST(Telemetry, TheLogHoldsEveryCycleEveryStepAndTheSummary) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "tenon_telemetry_test.lcmlog";
+  std::vector<std::string> warnings;
+  const RunResult result = published_run(open_telemetry("none", file, warnings));
+  EXPECT_TRUE(warnings.empty());
+
+  lcm::LogFile log(file.string(), "r");
+  ASSERT_TRUE(log.good());
+  std::uint64_t cycles = 0;
+  std::vector<tenon::step_event_t> steps;
+  std::vector<tenon::run_summary_t> summaries;
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    if (event->channel == kCycleChannel) {
+      tenon::cycle_state_t m;
+      ASSERT_GT(m.decode(event->data, 0, event->datalen), 0);
+      EXPECT_EQ(m.sequence, static_cast<std::int64_t>(cycles));
+      EXPECT_EQ(m.joint_count, 3);
+      EXPECT_EQ(m.motion_ns, static_cast<std::int64_t>(cycles + 1) * kCycle_ns);
+      ++cycles;
+    } else if (event->channel == kStepChannel) {
+      ASSERT_GT(steps.emplace_back().decode(event->data, 0, event->datalen), 0);
+    } else if (event->channel == kRunChannel) {
+      ASSERT_GT(summaries.emplace_back().decode(event->data, 0, event->datalen), 0);
+    }
+  }
+  EXPECT_EQ(cycles, result.statistics.cycles);
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[0].outcome, 1);
+  EXPECT_EQ(steps[0].signature, 2);
+  EXPECT_NEAR(steps[0].travelled[0], 0.03, 5e-4);
+  EXPECT_EQ(steps[1].successor, 254);
+  ASSERT_EQ(summaries.size(), 1U);
+  EXPECT_EQ(summaries[0].exit_code, 0);
+  EXPECT_EQ(summaries[0].plan, "hand-made");
+  EXPECT_EQ(summaries[0].sequence, static_cast<std::int64_t>(result.statistics.cycles));
+  std::filesystem::remove(file);
+}
+
+struct Inbox {
+  void cycle(const lcm::ReceiveBuffer* /*b*/, const std::string& /*c*/,
+             const tenon::cycle_state_t* m) {
+    last = *m;
+    ++cycles;
+  }
+  void step(const lcm::ReceiveBuffer* /*b*/, const std::string& /*c*/,
+            const tenon::step_event_t* /*m*/) {
+    ++steps;
+  }
+  tenon::cycle_state_t last{};
+  std::uint64_t cycles = 0;
+  int steps = 0;
+};
+
+TEST(Telemetry, ASubscriberGetsWhatTheControllerDid) {
+  const auto queue = std::make_shared<lcm::LCM>("memq://");
+  ASSERT_TRUE(queue->good());
+  Inbox inbox;
+  queue->subscribe(kCycleChannel, &Inbox::cycle, &inbox)->setQueueCapacity(0);
+  queue->subscribe(kStepChannel, &Inbox::step, &inbox)->setQueueCapacity(0);
+  const RunResult result = published_run({queue});
+  while (queue->handleTimeout(0) > 0) {
+  }
+  EXPECT_EQ(inbox.cycles, result.statistics.cycles);
+  EXPECT_EQ(inbox.steps, 2);
+  EXPECT_EQ(inbox.last.state, static_cast<int>(State::kFinished));
+  EXPECT_EQ(inbox.last.end_reason, static_cast<int>(EndReason::kPlanDone));
+  EXPECT_NEAR(inbox.last.pose_position_m[1], 0.04, 5e-4);
+}
+
+TEST(Telemetry, AFullRingDropsAndCounts) {
+  const auto recorder = std::make_unique<Recorder>();
+  for (int i = 0; i < 5000; ++i) recorder->record({});
+  EXPECT_EQ(recorder->dropped(), 5000U - 4096U);
+}
+
+TEST(Telemetry, ALogThatCannotBeWrittenIsBadInput) {
+  std::vector<std::string> warnings;
+  EXPECT_THROW((void)open_telemetry("none", "/nonexistent/run.lcmlog", warnings), InputError);
+}
+
+TEST(RunResult, TheJsonTellsStepsReasonAndCycle) {
+  Bench bench(touch_and_slide_plan());
+  bench.arm.walls.push_back({0, +1, 0.13});
+  bench.run();
+  const RunResult result = gather_result(bench.controller, bench.runner, 7, "");
+  const auto json =
+      nlohmann::json::parse(to_json(result, bench.controller.plan(), bench.controller.cell()));
+  EXPECT_EQ(json.at("status"), "done");
+  EXPECT_EQ(json.at("reason"), "plan_done");
+  EXPECT_EQ(json.at("exit_code"), 0);
+  ASSERT_EQ(json.at("steps").size(), 2U);
+  EXPECT_EQ(json["steps"][0].at("outcome"), "contact");
+  EXPECT_EQ(json["steps"][0].at("signature"), "-x");
+  EXPECT_EQ(json["steps"][0].at("next"), 1);
+  EXPECT_EQ(json["steps"][1].at("next"), "done");
+  EXPECT_EQ(json.at("cycle").at("records_dropped"), 7);
+  EXPECT_EQ(json.at("cycle").at("cycles"), result.statistics.cycles);
+}
+
+TEST(RunResult, AnArmThatNeverDisabledIsNoSuccess) {
+  Plan plan = hand_made_plan();
+  plan.steps.push_back(hand_made_step(1, 0.01, {{Outcome::kReached, kSuccessorDone}}));
+  Bench bench(plan);
+  bench.arm.never_disables = true;
+  bench.run();
+  const RunResult result = gather_result(bench.controller, bench.runner, 0, "");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.message.find("did not confirm"), std::string::npos);
+}
+
+TEST(RunResult, AStepIsOneLineForPeople) {
+  StepReport report;
+  report.step = 3;
+  report.commanded[0] = 0.1;
+  report.result.outcome = Outcome::kContact;
+  report.result.signature.bits = ContactSignature::bit(0, -1);
+  report.result.travelled[0] = 0.0312;
+  report.result.peak_force_N = 6.84;
+  report.result.duration_ns = 840'000'000;
+  EXPECT_EQ(step_line(report),
+            "step  3: +x 0.100 m -> contact (holds -x) after 0.0312 m, 6.8 N, 0.84 s");
+}
+
+}  // namespace
+}  // namespace tenon::executor

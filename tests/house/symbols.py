@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Shows by their symbols that no physics engine and no planner is inside tenon-exec.
+
+Compares with what the libraries define: their strong symbols, so not the inline functions and
+templates that everybody instantiates. The same question put to tenon-plan must be answered with yes,
+or it proves nothing.
+
+  symbols.py BUILD ODE_LIBRARY
+"""
+import pathlib
+import subprocess
+import sys
+
+STRONG = set("TDBRS")
+
+
+def nm(*arguments):
+    run = subprocess.run(["nm", *map(str, arguments)], text=True, capture_output=True, check=True)
+    for line in run.stdout.splitlines():
+        words = line.split()
+        if len(words) >= 2 and len(words[-2]) == 1:
+            yield words[-2], words[-1].split("@")[0]
+
+
+def defined(*arguments):
+    return {name for kind, name in nm("--defined-only", *arguments) if kind in STRONG}
+
+
+def contained(executable):
+    """Every symbol that an executable defines or asks a shared library for."""
+    return {name for _, name in nm(executable)}
+
+
+def main():
+    build = pathlib.Path(sys.argv[1])
+    ode = defined("--dynamic", sys.argv[2])
+    libraries = {
+        "ODE": {name for name in ode if name.startswith("d") or name.startswith("_Z")},
+        "planner": defined(build / "planner/libplanner.a"),
+        "sim": defined(build / "sim/libsim.a"),
+        "executor": defined(build / "executor/libexecutor.a"),
+    }
+    # A static variable of the same name may stand in two libraries; main is in none.
+    failures = 0
+    for program, forbidden, expected in (
+            ("tenon-exec", ("ODE", "planner", "sim"), ("executor",)),
+            ("tenon-plan", ("executor",), ("ODE", "planner", "sim"))):
+        symbols = contained(build / "bin" / program)
+        for name in forbidden + expected:
+            common = symbols & libraries[name]
+            wrong = bool(common) != (name in expected)
+            failures += wrong
+            print(f"{'FAILED: ' if wrong else ''}{program} holds {len(common)} of the "
+                  f"{len(libraries[name])} symbols of {name}")
+            if wrong and common:
+                print("  " + "\n  ".join(sorted(common)[:10]))
+    needed = subprocess.run(["readelf", "--dynamic", str(build / "bin/tenon-exec")], text=True,
+                            capture_output=True, check=True).stdout
+    if "libode" in needed:
+        failures += 1
+        print("FAILED: tenon-exec loads libode")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,247 @@
+// Bring-up against scripted nodes: what is written in which order, and how each failure is named.
+
+#include "hw/bring_up.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "hw/describe_fault.h"
+#include "hw/node_settings.h"
+#include "shared/base/error.h"
+#include "tests/hw/gantry_on_bus.h"
+
+namespace tenon::hw {
+namespace {
+
+std::string failure(GantryOnBus& gantry) {
+  EXPECT_FALSE(gantry.prepare());
+  EXPECT_EQ(gantry.arm.state(), ArmState::kFault);
+  return describe(gantry.arm.fault(), gantry.robot);
+}
+
+TEST(BringUp, WritesTheDriveThisConfigurationInThisOrder) {
+  GantryOnBus gantry;
+  ASSERT_TRUE(gantry.prepare()) << describe(gantry.arm.fault(), gantry.robot);
+  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  Pairs written;
+  for (const auto& write : gantry.nodes[1]->writes) written.emplace_back(write.object, write.value);
+  const Pairs expected{
+      {0x101700, 100},         // heartbeat every 100 ms
+      {0x100600, 2000},        // SYNC period, us
+      {0x60C201, 2},           // 2 * 10^-3 s
+      {0x60C202, 0xFD},        // -3
+      {0x606000, 8},           // cyclic synchronous position
+      {0x101601, 0x007F012C},  // watch node 127 for 300 ms
+      {0x600700, 3},           // then quick stop
+      {0x605A00, 6},           // quick stop: ramp down and hold
+      {0x605B00, 1},          {0x605C00, 1},          {0x608500, 10'000'000},  // 10 m/s^2
+      {0x606500, 5000},                                                        // 5 mm
+      {0x606600, 10},                                                          // 10 ms
+      {0x140001, 0x80000202}, {0x140002, 1},          {0x160000, 0},
+      {0x160001, 0x60400010}, {0x160002, 0x607A0020}, {0x160000, 2},
+      {0x140001, 0x00000202}, {0x180001, 0xC0000191}, {0x180002, 1},
+      {0x1A0000, 0},          {0x1A0001, 0x60410010}, {0x1A0002, 0x60640020},
+      {0x1A0003, 0x60770010}, {0x1A0000, 3},          {0x180001, 0x40000191},
+      {0x180101, 0xC0000282},  // the second TPDO that it had on
+  };
+  EXPECT_EQ(written, expected);
+}
+
+TEST(BringUp, GivesTheSensorTheHighestPriority) {
+  GantryOnBus gantry;
+  ASSERT_TRUE(gantry.prepare());
+  auto& objects = gantry.nodes[3]->objects;
+  EXPECT_EQ(objects[0x180001].value, 0x40000181u);
+  EXPECT_EQ(objects[0x180101].value, 0x40000182u);
+  EXPECT_EQ(objects[0x1A0001].value, 0x64010110u);
+  EXPECT_EQ(objects[0x1A0004].value, 0x20010010u);
+  EXPECT_EQ(objects[0x1A0103].value, 0x64010610u);
+  EXPECT_EQ(objects[0x1A0100].value, 4u);
+}
+
+TEST(BringUp, EveryNmtTransitionLeavesAndIsConfirmed) {
+  GantryOnBus gantry;
+  std::vector<std::string> seen;
+  gantry.bus.set_filter([&](CanFrame& frame, std::size_t) {
+    const std::string node = std::to_string(frame.data[1]);
+    if (frame.id == 0) seen.push_back("nmt " + std::to_string(frame.data[0]) + " to " + node);
+    if (frame.id == 0x703) seen.push_back("node 3 is " + std::to_string(frame.data[0]));
+    return true;
+  });
+  ASSERT_TRUE(gantry.prepare());
+  const auto position = [&](const std::string& what) {
+    const auto found = std::find(seen.begin(), seen.end(), what);
+    EXPECT_NE(found, seen.end()) << what;
+    return found - seen.begin();
+  };
+  EXPECT_LT(position("nmt 130 to 3"), position("node 3 is 0"));
+  EXPECT_LT(position("node 3 is 0"), position("nmt 128 to 3"));
+  EXPECT_LT(position("nmt 128 to 3"), position("node 3 is 127"));
+  EXPECT_LT(position("node 3 is 127"), position("nmt 1 to 3"));
+  EXPECT_LT(position("nmt 1 to 3"), position("node 3 is 5"));
+  ASSERT_EQ(gantry.arm.bring_up().identities().size(), 4u);
+  EXPECT_EQ(gantry.arm.bring_up().identities()[3].device_type, 0x194u);
+  EXPECT_EQ(gantry.arm.bring_up().identities()[0].vendor, 0xABCDu);
+}
+
+TEST(BringUp, NodeThatDoesNotAnswerIsNamedWithWhatWasExpected) {
+  GantryOnBus gantry;
+  gantry.nodes[2]->dead = true;
+  const std::int64_t start_ns = gantry.now_ns;
+  EXPECT_EQ(failure(gantry),
+            "node 3 (z): no boot-up within 1.0 s; expected 0x703 after NMT reset; check power, "
+            "wiring, bit rate, node id");
+  EXPECT_EQ(gantry.now_ns - start_ns, 1'000'000'000);
+}
+
+TEST(BringUp, NodeThatWakesLateIsResetOnceMore) {
+  GantryOnBus gantry;
+  gantry.nodes[2]->dead = true;
+  for (int i = 0; i < 300; ++i) {
+    EXPECT_FALSE(gantry.arm.prepare(gantry.now_ns));
+    gantry.step_nodes();
+    gantry.now_ns += 1'000'000;
+  }
+  gantry.nodes[2]->dead = false;
+  EXPECT_TRUE(gantry.prepare());
+}
+
+TEST(BringUp, RefusedObjectIsNamedWithItsAbort) {
+  GantryOnBus gantry;
+  gantry.nodes[0]->refuses[0x60C201] = 0x06090030;
+  EXPECT_EQ(failure(gantry),
+            "node 1 (x): refused 60C2h:1 = 0x2: value out of range (abort 0x06090030); check the "
+            "device's manual and firmware");
+}
+
+TEST(BringUp, ValueThatIsNotKeptIsNoticedOnReadBack) {
+  GantryOnBus gantry;
+  gantry.nodes[1]->keeps[0x606500] = 0;
+  EXPECT_EQ(failure(gantry),
+            "node 2 (y): holds 6065h:0 = 0x0 where 0x1388 was asked for; check the device's "
+            "limits and firmware");
+}
+
+TEST(BringUp, DriveWithoutTheModeIsRefused) {
+  GantryOnBus gantry;
+  gantry.nodes[0]->keeps[0x650200] = 0x43;
+  EXPECT_EQ(failure(gantry),
+            "node 1 (x): does not support the robot file's mode of operation (6502h = 0x43, bit "
+            "mask 0x80 is missing); set the joint's mode to 8 or 7 as the drive offers");
+}
+
+TEST(BringUp, ModeThatIsNeverDisplayedEndsAfterHalfASecond) {
+  GantryOnBus gantry;
+  gantry.nodes[0]->keeps[0x606100] = 0;
+  const std::int64_t start_ns = gantry.now_ns;
+  EXPECT_EQ(failure(gantry),
+            "node 1 (x): holds 6061h:0 = 0x0 where 0x8 was asked for; check the device's limits "
+            "and firmware");
+  EXPECT_GE(gantry.now_ns - start_ns, 500'000'000);
+}
+
+TEST(BringUp, SomethingElseThanADriveIsRefused) {
+  GantryOnBus gantry;
+  gantry.nodes[0]->keeps[0x100000] = 0x00000191;
+  EXPECT_NE(failure(gantry).find("is no CiA 402 drive"), std::string::npos);
+}
+
+TEST(BringUp, SdoWithoutAnswerIsNamed) {
+  GantryOnBus gantry;
+  gantry.nodes[3]->mute_at = 0x1A0102;
+  EXPECT_EQ(failure(gantry),
+            "node 4 (force/torque sensor): no SDO answer for 1A01h:2 within 0.5 s; expected "
+            "0x584; check that no other master talks to the node");
+}
+
+TEST(BringUp, SensorThatReportsAFaultIsRefused) {
+  GantryOnBus gantry;
+  gantry.nodes[3]->keeps[0x200200] = 2;
+  EXPECT_EQ(failure(gantry),
+            "node 4 (force/torque sensor): reports status 0x0002 (2002h) where 0 is good; check "
+            "the sensor");
+}
+
+TEST(BringUp, NodeThatDoesNotStartIsNamed) {
+  GantryOnBus gantry;
+  gantry.nodes[1]->ignores_start = true;
+  EXPECT_EQ(failure(gantry),
+            "node 2 (y): did not become operational within 1.0 s; expected 0x702#05; check the "
+            "node's error register (1001h)");
+}
+
+TEST(BringUp, NodeThatResetsDuringConfigurationIsNamed) {
+  GantryOnBus gantry;
+  int requests = 0;
+  gantry.bus.set_filter([&](CanFrame& frame, std::size_t) {
+    if (frame.id == 0x603 && ++requests == 10) gantry.nodes[0]->reboot();
+    return true;
+  });
+  EXPECT_NE(failure(gantry).find("node 1 (x): has reset itself while running"), std::string::npos);
+}
+
+TEST(BringUp, DeadBusIsNamed) {
+  GantryOnBus gantry;
+  gantry.bus.set_up(false);
+  EXPECT_EQ(gantry.arm.prepare(gantry.now_ns), false);
+  EXPECT_EQ(gantry.arm.fault().kind, ArmFaultKind::kBusDown);
+}
+
+TEST(BringUp, PrepareStartsOverAfterAFault) {
+  GantryOnBus gantry;
+  gantry.nodes[2]->dead = true;
+  EXPECT_FALSE(gantry.prepare());
+  gantry.nodes[2]->dead = false;
+  EXPECT_TRUE(gantry.prepare());
+  EXPECT_EQ(gantry.arm.state(), ArmState::kDisabled);
+}
+
+std::string refusal(const Robot& robot) {
+  try {
+    check_robot(robot);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CheckRobot, RefusesWhatCannotBeDriven) {
+  EXPECT_EQ(refusal(gantry_robot()), "");
+  Robot robot = gantry_robot();
+  robot.joints[1].node = 4;
+  EXPECT_EQ(refusal(robot),
+            "robot 'gantry': node 4 is given to both joint y and the force/torque sensor; every "
+            "node needs its own");
+  robot = gantry_robot();
+  robot.cycle_us = 2'000'001;
+  EXPECT_NE(refusal(robot).find("60C2h"), std::string::npos);
+  robot = gantry_robot();
+  robot.joints[0].counts_per_unit = 0.0;
+  EXPECT_NE(refusal(robot).find("joint x: |counts per unit| = 0"), std::string::npos);
+  robot = gantry_robot();
+  robot.joints[0].counts_per_unit = 1e10;
+  EXPECT_NE(refusal(robot).find("must fit 32 bits"), std::string::npos);
+  robot = gantry_robot();
+  robot.heartbeat_timeout_ms = 150;
+  EXPECT_NE(refusal(robot).find("at least twice"), std::string::npos);
+  robot = gantry_robot();
+  robot.joints.clear();
+  EXPECT_NE(refusal(robot).find("0 joints"), std::string::npos);
+}
+
+TEST(InterpolationPeriod, IsExactOrNothing) {
+  EXPECT_EQ(interpolation_period(2000)->value, 2);
+  EXPECT_EQ(interpolation_period(2000)->exponent, -3);
+  EXPECT_EQ(interpolation_period(2500)->value, 25);
+  EXPECT_EQ(interpolation_period(2500)->exponent, -4);
+  EXPECT_EQ(interpolation_period(250)->value, 25);
+  EXPECT_EQ(interpolation_period(250)->exponent, -5);
+  EXPECT_FALSE(interpolation_period(2001));
+  EXPECT_FALSE(interpolation_period(256'000));
+}
+
+}  // namespace
+}  // namespace tenon::hw

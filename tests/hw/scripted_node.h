@@ -1,0 +1,79 @@
+#pragma once
+// A minimal CANopen node for tests of the master: an object dictionary in a map, NMT, heartbeat,
+// expedited SDO, and a CiA 402 drive or a force/torque source behind it. Written from the standard
+// with literal bytes, sharing nothing with the master. Steps with the caller; no thread, no clock.
+// Its knobs make it misbehave.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "shared/ports/can_bus.h"
+
+namespace tenon::hw {
+
+class ScriptedNode {
+ public:
+  enum class Kind : std::uint8_t { kDrive, kSensor };
+  struct Object {
+    std::uint8_t size_bytes = 4;
+    std::uint32_t value = 0;
+  };
+  struct Write {
+    std::uint32_t object = 0;  ///< index << 8 | sub
+    std::uint32_t value = 0;
+  };
+
+  ScriptedNode(Kind kind, std::uint8_t node, CanBus& bus);
+
+  /// Takes in everything that has arrived and answers it.
+  void step(std::int64_t now_ns);
+  void send(std::uint32_t id, std::vector<std::uint8_t> bytes);
+  /// As after a power failure: everything is lost, a boot-up message leaves.
+  void reboot();
+
+  // What the test may look at and change.
+  std::map<std::uint32_t, Object> objects;
+  std::vector<Write> writes;  ///< in the order of arrival
+  std::uint8_t nmt_state = 0x7F;
+  std::uint16_t statusword = 0x0250;
+  std::uint16_t controlword = 0;  ///< as of the last SYNC
+  std::int32_t position_counts = 0;
+  std::int32_t target_counts = 0;  ///< as of the last SYNC
+  std::int16_t torque_permille = 0;
+  std::array<std::int16_t, 6> wrench_counts{};
+  std::uint16_t sample_counter = 0;
+  int samples_per_sync = 1;
+  std::vector<CanFrame> commands;  ///< RPDOs as they came
+
+  // Knobs.
+  bool dead = false;  ///< neither hears nor speaks
+  bool heartbeats = true;
+  bool answers_sync = true;
+  bool ignores_start = false;
+  bool stuck = false;   ///< the drive's state machine does not move
+  bool tears = false;   ///< a new sample between the two frames of a wrench
+  bool follows = true;  ///< position := target at each SYNC
+  std::uint8_t tpdo_bytes = 8;
+  std::map<std::uint32_t, std::uint32_t> refuses;  ///< object to abort code
+  std::map<std::uint32_t, std::uint32_t> keeps;    ///< object to the value that reading gives
+  std::optional<std::uint32_t> mute_at;            ///< object whose SDO is not answered
+
+ private:
+  void on_nmt(const CanFrame& frame);
+  void on_sdo(const CanFrame& frame);
+  void on_sync();
+  void answer(std::uint8_t command, const CanFrame& request, std::uint32_t value);
+  void run_drive();
+  void reset_communication();
+
+  Kind kind_;
+  std::uint8_t node_;
+  CanBus& bus_;
+  std::int64_t next_heartbeat_ns_ = 0;
+  std::optional<CanFrame> pending_command_;
+};
+
+}  // namespace tenon::hw

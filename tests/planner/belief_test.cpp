@@ -1,0 +1,88 @@
+#include "planner/belief.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/planner/room_task.h"
+
+namespace tenon::planner {
+namespace {
+
+Particle at(double x, double y, const Vector3& turn_rad = Vector3::Zero()) {
+  Particle particle;
+  particle.pose.position_m = {x, y, 0.0};
+  particle.pose.orientation = rotation_of(turn_rad);
+  return particle;
+}
+
+TEST(Belief, ParticlesSitOnTheTipsOfTheCrossPolytopeAndNotInItsCentre) {
+  const Task task = room_task();
+  const Belief belief = cross_polytope(task, task.starts.front());
+  ASSERT_EQ(belief.particles.size(), 4U);
+  EXPECT_DOUBLE_EQ(belief.particles[0].pose.position_m.x(), -0.23 + 0.06);
+  EXPECT_DOUBLE_EQ(belief.particles[1].pose.position_m.x(), -0.23 - 0.06);
+  EXPECT_DOUBLE_EQ(belief.particles[2].pose.position_m.y(), -0.11 + 0.06);
+  EXPECT_DOUBLE_EQ(belief.particles[3].pose.position_m.y(), -0.11 - 0.06);
+  EXPECT_DOUBLE_EQ(belief.particles[2].pose.position_m.x(), -0.23);
+}
+
+TEST(Belief, BothExtremesOfFrictionStandOnEveryAxis) {
+  const Task task = room_task();
+  const auto p = cross_polytope(task, task.starts.front()).particles;
+  EXPECT_EQ(p[0].physics.friction, task.friction.low);
+  EXPECT_EQ(p[1].physics.friction, task.friction.high);
+  EXPECT_EQ(p[2].physics.friction, task.friction.high);
+  EXPECT_EQ(p[3].physics.friction, task.friction.low);
+}
+
+TEST(Belief, UncertaintyIsTheTraceOfTheCovariance) {
+  const Metric metric{2.0, 3.0};
+  // Var x = (2 * 0.06^2) / 4 = 0.0018, the same for y.
+  const Belief cross{{at(0.06, 0), at(-0.06, 0), at(0, 0.06), at(0, -0.06)}};
+  EXPECT_NEAR(uncertainty(cross, metric), 2.0 * 0.0036, 1e-15);
+  // Two turned by +-0.1 rad about z: variance 0.01.
+  const Belief turned{{at(0, 0, {0, 0, 0.1}), at(0, 0, {0, 0, -0.1})}};
+  EXPECT_NEAR(uncertainty(turned, metric), 3.0 * 0.01, 1e-12);
+}
+
+TEST(Belief, GeodesicMeanIgnoresTheWrapAtHalfATurn) {
+  // 170 and 190 degrees about z: a plain mean of rotation vectors would say 0.
+  const Belief belief{
+      {at(0, 0, {0, 0, 170.0 * M_PI / 180.0}), at(0, 0, {0, 0, -170.0 * M_PI / 180.0})}};
+  const Pose mean = mean_pose(belief);
+  EXPECT_NEAR(mean.orientation.angularDistance(rotation_of({0, 0, M_PI})), 0.0, 1e-12);
+  const double ten_rad = 10.0 * M_PI / 180.0;
+  EXPECT_NEAR(uncertainty(belief, {1.0, 1.0}), ten_rad * ten_rad, 1e-12);
+}
+
+TEST(Belief, GeodesicMeanDoesNotDependOnTheFrame) {
+  const Belief belief{
+      {at(0, 0, {0.4, 0.1, 0}), at(0, 0, {-0.2, 0.5, 0.3}), at(0, 0, {0, -0.3, 0.9})}};
+  const Eigen::Quaterniond turn = rotation_of({1.0, -2.0, 0.5});
+  Belief seen = belief;
+  for (Particle& p : seen.particles) p.pose.orientation = turn * p.pose.orientation;
+  EXPECT_NEAR(mean_pose(seen).orientation.angularDistance(turn * mean_pose(belief).orientation),
+              0.0, 1e-12);
+}
+
+TEST(Belief, DistanceAddsTranslationAndAngle) {
+  const Metric metric{2.0, 0.5};
+  EXPECT_NEAR(distance(at(0, 0).pose, at(0.3, 0.4, {0, 0, 0.2}).pose, metric),
+              2.0 * 0.5 + 0.5 * 0.2, 1e-12);
+}
+
+TEST(Belief, IdentityTellsContactsApartAndForgivesMicrometres) {
+  const Belief one{{at(0.1, 0.2)}};
+  Belief other = one;
+  other.particles[0].pose.position_m.x() += 1e-5;
+  EXPECT_EQ(identity(one), identity(other));
+  other.particles[0].signature.bits = ContactSignature::bit(0, -1);
+  EXPECT_NE(identity(one), identity(other));
+  other = one;
+  other.particles[0].pose.position_m.x() += 2e-3;
+  EXPECT_NE(identity(one), identity(other));
+}
+
+}  // namespace
+}  // namespace tenon::planner

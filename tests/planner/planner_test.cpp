@@ -1,0 +1,317 @@
+// The whole planner on the exact double, and its parts that judge a plan.
+
+#include "planner/planner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "planner/envelopes.h"
+#include "planner/html_report.h"
+#include "planner/inspection.h"
+#include "planner/normal_draws.h"
+#include "planner/summary.h"
+#include "shared/base/error.h"
+#include "shared/plan/codec.h"
+#include "tests/planner/room_task.h"
+
+namespace tenon::planner {
+namespace {
+
+double stopped_clock() { return 0.0; }
+
+PlanReport planned(const Task& task, const WallRollout::World& world = room(),
+                   const PlannerOptions& options = {}) {
+  return make_plan(task, task.starts.front(), WallRollout(world), options, stopped_clock);
+}
+
+TEST(Planner, FindsAPlanThatBringsEveryDrawToTheGoal) {
+  const Task task = room_task();
+  const PlanReport report = planned(task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+  EXPECT_EQ(report.plan->draws, 200U);
+  EXPECT_EQ(report.validation.at_goal_within(2.0), report.validation.within(2.0));
+  EXPECT_TRUE(report.plan->check_envelopes);
+  EXPECT_GE(report.plan->bound, 1.0);
+  EXPECT_LE(report.plan->bound, task.w1 * task.w2 + 1e-9);
+  EXPECT_LE(report.bytes.size(), 2048U);
+}
+
+TEST(Planner, TheBytesAreThePlanAndCertifyAgain) {
+  const Task task = room_task();
+  const PlanReport report = planned(task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  EXPECT_EQ(encode_plan(*report.plan), report.bytes);
+  RolloutPool pool(WallRollout(room()), 1);
+  const Certification again = certify(report.bytes, task, pool);
+  EXPECT_TRUE(again.holds());
+  EXPECT_EQ(again.cost, report.plan->cost);
+}
+
+TEST(Planner, ThreadsDoNotChangeAByte) {
+  const Task task = room_task();
+  PlannerOptions two;
+  two.threads = 2;
+  PlannerOptions five;
+  five.threads = 5;
+  const auto one = planned(task).bytes;
+  ASSERT_FALSE(one.empty());
+  EXPECT_EQ(one, planned(task, room(), two).bytes);
+  EXPECT_EQ(one, planned(task, room(), five).bytes);
+}
+
+TEST(Planner, AnOutcomeThatNoDrawHadLeadsToFail) {
+  const PlanReport report = planned(room_task());
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  for (std::size_t i = 0; i < report.plan->steps.size(); ++i) {
+    const Step& step = report.plan->steps[i];
+    EXPECT_EQ(step.rule(Outcome::kTimeout).successor, kSuccessorFail);
+    EXPECT_EQ(step.rule(Outcome::kBlocked).successor, kSuccessorFail);
+    const Successor next =
+        i + 1 == report.plan->steps.size() ? kSuccessorDone : static_cast<Successor>(i + 1);
+    for (const OutcomeRule& rule : step.outcomes) {
+      if (rule.successor != kSuccessorFail) {
+        EXPECT_EQ(rule.successor, next);
+      }
+    }
+  }
+}
+
+TEST(Planner, CertificationRejectsAPlanWithAChangedDisplacement) {
+  const Task task = room_task();
+  const PlanReport report = planned(task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  RolloutPool pool(WallRollout(room()), 1);
+  Plan changed = *report.plan;
+  Step& last = changed.steps.back();
+  last.displacement *= 0.9;
+  const Certification refused = certify(encode_plan(changed), task, pool);
+  ASSERT_FALSE(refused.holds());
+  EXPECT_EQ(refused.refuting()->disagreement.step, changed.steps.size() - 1);
+  EXPECT_NE(refused.refuting()->disagreement.why.find("outside its envelope"), std::string::npos);
+  // Without envelopes the chain simply ends beside the goal.
+  changed.check_envelopes = false;
+  const Certification beside = certify(encode_plan(changed), task, pool);
+  ASSERT_FALSE(beside.holds());
+  EXPECT_NE(beside.refuting()->disagreement.why.find("beside the goal"), std::string::npos);
+}
+
+TEST(Planner, CertificationRefusesAPlanOfAnotherTask) {
+  Task task = room_task();
+  const PlanReport report = planned(task);
+  RolloutPool pool(WallRollout(room()), 1);
+  task.starts.front().name = "b";
+  EXPECT_THROW((void)certify(report.bytes, task, pool), InputError);
+  task = room_task();
+  task.starts.front().pose.position_m.x() += 0.01;
+  EXPECT_THROW((void)certify(report.bytes, task, pool), InputError);
+}
+
+TEST(Planner, CertificationRefusesAPlanThatSaysAnotherGoalOrTolerance) {
+  const Task task = room_task();
+  const PlanReport report = planned(task);
+  ASSERT_TRUE(report.plan.has_value());
+  RolloutPool pool(WallRollout(room()), 1);
+  Plan plan = *report.plan;
+  plan.goal.position_m.x() += 0.1;
+  EXPECT_THROW((void)certify(encode_plan(plan), task, pool), InputError);
+  plan = *report.plan;
+  plan.goal_tolerance_m *= 100.0;
+  EXPECT_THROW((void)certify(encode_plan(plan), task, pool), InputError);
+}
+
+TEST(Planner, PhysicsThatChangesAtHalfTheStepIsRefutedAndSearchedAround) {
+  const Task task = room_task();
+  WallRollout::World world = room();
+  world.x_gain_at_short_step = 1.1;
+  world.short_step_us = task.rollout_step_us;
+  PlannerOptions options;
+  options.rounds_max = 4;
+  const PlanReport report = planned(task, world, options);
+  EXPECT_EQ(report.status, PlanStatus::kNotCertified);
+  ASSERT_EQ(report.refusals.size(), 4U);
+  EXPECT_NE(report.refusals[0].find("half the integration step"), std::string::npos);
+  EXPECT_FALSE(report.plan.has_value());
+}
+
+TEST(Planner, AStartInCollisionIsNamed) {
+  Task task = room_task();
+  task.starts.front().pose.position_m.x() = -0.6;
+  EXPECT_EQ(planned(task).status, PlanStatus::kStartInCollision);
+  WallRollout rollout(room());
+  EXPECT_THROW(check_start(task, task.starts.front(), rollout), InputError);
+  // A particle in the wall is enough.
+  task.starts.front().pose.position_m.x() = -0.46;
+  EXPECT_EQ(planned(task).status, PlanStatus::kStartInCollision);
+  task.starts.front().pose.position_m.x() = -0.43;
+  EXPECT_NO_THROW(check_start(task, task.starts.front(), rollout));
+}
+
+TEST(Planner, AnUnreachableGoalExhaustsTheGraph) {
+  Task task = room_task();
+  task.coordinates = 0b01;  // the goal's y is out of reach
+  task.starts.front().sigma[1] = 0.0;
+  const PlanReport report = planned(task);
+  EXPECT_EQ(report.status, PlanStatus::kExhausted) << report.reason;
+}
+
+TEST(Planner, NoAttractorIsSaidSo) {
+  // Nothing to touch within reach of any push; a corridor far away keeps the graph finite.
+  Task task = room_task();
+  task.coordinates = 0b01;
+  task.starts.front().sigma[1] = 0.0;
+  task.long_step_m = 0.05;
+  EXPECT_EQ(planned(task).status, PlanStatus::kNoAttractor);
+}
+
+TEST(Planner, TheTimeLimitIsAReasonOfItsOwn) {
+  const Task task = room_task();
+  double now_s = 0.0;
+  const PlanReport report =
+      make_plan(task, task.starts.front(), WallRollout(room()), {}, [&] { return now_s += 20.0; });
+  EXPECT_EQ(report.status, PlanStatus::kTimeLimit);
+  EXPECT_NE(report.reason.find("60 s"), std::string::npos);
+}
+
+TEST(Planner, TheExpansionLimitIsAReasonOfItsOwn) {
+  PlannerOptions options;
+  options.expansions_max = 2;
+  EXPECT_EQ(planned(room_task(), room(), options).status, PlanStatus::kExpansionLimit);
+}
+
+TEST(Planner, AStartAtTheGoalNeedsNoPlan) {
+  Task task = room_task();
+  task.starts.front().sigma.setZero();
+  task.starts.front().pose = task.goal;
+  EXPECT_EQ(planned(task).status, PlanStatus::kAlreadyAtGoal);
+}
+
+TEST(Planner, AFreeStepRunsFastAndAContactIsMetSlowly) {
+  const PlanReport report = planned(room_task());
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  for (std::size_t i = 0; i < report.plan->steps.size(); ++i) {
+    const Step& step = report.plan->steps[i];
+    for (const Draw& draw : report.validation.draws) {
+      if (draw.chain.moves[i].outcome == Outcome::kReached) continue;
+      EXPECT_GE(draw.chain.moves[i].travelled.norm(), step.slow_from_m);
+    }
+  }
+  EXPECT_NEAR(report.plan->steps.back().slow_from_m, report.plan->steps.back().displacement.norm(),
+              1e-6);
+}
+
+GuardedMove::Result result_of(Outcome outcome, double x_m, std::uint16_t bits = 0) {
+  GuardedMove::Result result;
+  result.outcome = outcome;
+  result.travelled.x() = x_m;
+  result.signature.bits = bits;
+  return result;
+}
+
+Chain chain_of(const GuardedMove::Result& move) {
+  Chain chain;
+  chain.moves = {move};
+  chain.steps = {0};
+  return chain;
+}
+
+TEST(Envelopes, SpanWhatWasSeenAndTheMarginsAndNothingElse) {
+  const Task task = room_task();
+  const std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.1};
+  const Plan draft = draft_plan(task, task.starts.front(), {}, displacements);
+  // 1 mm, 0.05 m/s * 10 ms, and 0.6 * 3 N / 1000 N/m.
+  EXPECT_NEAR(envelope_margins(draft, task).position_m, 1e-3 + 0.5e-3 + 1.8e-3, 1e-8);
+
+  const std::vector<Chain> contacts = {chain_of(result_of(Outcome::kContact, 0.04, 0b0010)),
+                                       chain_of(result_of(Outcome::kContact, 0.06, 0b0110))};
+  const Plan plan = with_envelopes(draft, task, contacts);
+  const OutcomeRule& rule = plan.steps[0].rule(Outcome::kContact);
+  EXPECT_NEAR(rule.envelope.travelled_min[0], 0.04 - 3.3e-3, 1e-8);
+  EXPECT_NEAR(rule.envelope.travelled_max[0], 0.06 + 3.3e-3, 1e-8);
+  EXPECT_EQ(rule.envelope.always.bits, 0b0010);
+  EXPECT_EQ(rule.envelope.possible.bits, 0b0110);
+  EXPECT_EQ(rule.envelope.travelled_max[2], 0.0);
+  EXPECT_EQ(plan.steps[0].rule(Outcome::kReached).successor, kSuccessorFail);
+}
+
+TEST(Envelopes, WhereSomeMissedTheContactItMayComeAnywhereUpToTheWholeWay) {
+  const Task task = room_task();
+  const std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.1};
+  const Plan draft = draft_plan(task, task.starts.front(), {}, displacements);
+  const std::vector<Chain> chains = {chain_of(result_of(Outcome::kContact, 0.04)),
+                                     chain_of(result_of(Outcome::kReached, 0.10))};
+  const Plan plan = with_envelopes(draft, task, chains);
+  EXPECT_GT(plan.steps[0].rule(Outcome::kContact).envelope.travelled_max[0], 0.10);
+  EXPECT_GT(plan.steps[0].rule(Outcome::kReached).envelope.travelled_min[0], 0.09);
+}
+
+TEST(NormalDraws, HaveTheMomentsAndTailsOfTheNormalDistribution) {
+  NormalDraws random(42);
+  constexpr int kCount = 200000;
+  double sum = 0.0, squares = 0.0, fourth = 0.0;
+  int beyond_one = 0, beyond_two = 0, beyond_three = 0;
+  for (int i = 0; i < kCount; ++i) {
+    const double z = random.normal();
+    sum += z;
+    squares += z * z;
+    fourth += z * z * z * z;
+    beyond_one += std::abs(z) > 1.0 ? 1 : 0;
+    beyond_two += std::abs(z) > 2.0 ? 1 : 0;
+    beyond_three += std::abs(z) > 3.0 ? 1 : 0;
+  }
+  EXPECT_NEAR(sum / kCount, 0.0, 0.01);
+  EXPECT_NEAR(squares / kCount, 1.0, 0.015);
+  EXPECT_NEAR(fourth / kCount, 3.0, 0.12);
+  const auto expected = [](double sigmas) { return kCount * std::erfc(sigmas / std::sqrt(2.0)); };
+  EXPECT_NEAR(beyond_one, expected(1.0), 4.0 * std::sqrt(expected(1.0)));
+  EXPECT_NEAR(beyond_two, expected(2.0), 4.0 * std::sqrt(expected(2.0)));
+  EXPECT_NEAR(beyond_three, expected(3.0), 4.0 * std::sqrt(expected(3.0)));
+}
+
+TEST(Validation, DrawsReachOutToOneSigmaBeyondTheParticlesAndAreRepeatable) {
+  const Task task = room_task();
+  const PlanReport report = planned(task);
+  RolloutPool pool(WallRollout(room()), 1);
+  ValidationParameters parameters;
+  parameters.draws = 1000;
+  const Validation one = validate(*report.plan, task, task.starts.front(), parameters, pool);
+  const Validation two = validate(*report.plan, task, task.starts.front(), parameters, pool);
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < one.draws.size(); ++i) {
+    EXPECT_EQ(one.draws[i].chain.start, two.draws[i].chain.start);
+    farthest = std::max(farthest, one.draws[i].mahalanobis);
+    EXPECT_GE(one.draws[i].chain.start.physics.friction, task.friction.low);
+    EXPECT_LE(one.draws[i].chain.start.physics.friction, task.friction.high);
+  }
+  EXPECT_LE(farthest, 3.0);
+  EXPECT_GT(farthest, 2.5);
+  // Rayleigh's share within two, of those within three.
+  const double share = (1.0 - std::exp(-2.0)) / (1.0 - std::exp(-4.5));
+  EXPECT_NEAR(static_cast<double>(one.within(2.0)), 1000.0 * share, 45.0);
+  EXPECT_EQ(one.at_goal_within(2.0), one.within(2.0));
+}
+
+TEST(Report, IsOneDocumentWithoutOutsideResources) {
+  const Task task = room_task();
+  const PlanReport report = planned(task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  const std::string html = html_report(*report.plan, task, report.certification, report.validation);
+  EXPECT_EQ(html.rfind("<!DOCTYPE html>", 0), 0U);
+  for (const char* outside : {"http:", "https:", "src=", "href=", "url(", "@import"}) {
+    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
+  }
+  EXPECT_NE(html.find("the chain holds"), std::string::npos);
+}
+
+TEST(Report, TheStepTableNamesEveryStepAndItsEnd) {
+  const PlanReport report = planned(room_task());
+  const std::string table = step_table(*report.plan);
+  EXPECT_NE(table.find("-> done"), std::string::npos);
+  EXPECT_NE(table.find("contact"), std::string::npos);
+  EXPECT_NE(plan_json(*report.plan, report.bytes.size()).find("\"successor\": \"done\""),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace tenon::planner

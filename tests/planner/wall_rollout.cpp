@@ -1,0 +1,60 @@
+#include "tests/planner/wall_rollout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tenon::planner {
+
+RolloutResult WallRollout::simulate(const Particle& particle, const MoveParameters& move,
+                                    std::int64_t step_us, std::vector<TraceSample>* trace) {
+  (void)trace;
+  RolloutResult result;
+  if (particle.pose.position_m.x() > world_.broken_beyond_x_m) {
+    result.failure = "the physics broke down";
+    return result;
+  }
+  Vector3 way_m = move.displacement.head<3>();
+  if (step_us < world_.short_step_us) way_m.x() *= world_.x_gain_at_short_step;
+  ContactSignature signature = particle.signature;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int environment = signature.sign(axis);
+    if (environment * way_m[axis] < 0.0) way_m[axis] = 0.0;
+    if (environment * way_m[axis] > 0.0) {
+      signature.bits &= static_cast<std::uint16_t>(~ContactSignature::bit(axis, environment));
+    }
+  }
+  // The nearest wall along the way stops everything.
+  double part = 1.0;
+  int stopping_axis = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (way_m[axis] == 0.0) continue;
+    const double wall_m = way_m[axis] > 0.0 ? world_.high_m[axis] : world_.low_m[axis];
+    const double room = (wall_m - particle.pose.position_m[axis]) / way_m[axis];
+    if (room < part) {
+      part = std::max(0.0, room);
+      stopping_axis = axis;
+    }
+  }
+  result.valid = true;
+  result.move.outcome = Outcome::kReached;
+  result.move.pose = particle.pose;
+  result.move.pose.position_m += part * way_m;
+  if (stopping_axis >= 0) {
+    result.move.outcome = Outcome::kContact;
+    const bool up = way_m[stopping_axis] > 0.0;
+    result.move.pose.position_m[stopping_axis] =
+        up ? world_.high_m[stopping_axis] : world_.low_m[stopping_axis];
+    signature.bits |= ContactSignature::bit(stopping_axis, up ? -1 : +1);
+    result.touching = {up ? "point-high" : "point-low"};
+  }
+  result.move.signature = signature;
+  result.move.travelled = displacement_between(particle.pose, result.move.pose);
+  return result;
+}
+
+bool WallRollout::in_collision(const Pose& tool_pose) {
+  const Vector3& p = tool_pose.position_m;
+  return (p.array() < world_.low_m.array()).any() || (p.array() > world_.high_m.array()).any();
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,118 @@
+// Files are written whole or not at all.
+
+#include "shared/config/files.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "shared/base/error.h"
+#include "shared/config/load.h"
+#include "shared/plan/codec.h"
+#include "tests/shared/example_plans.h"
+#include "tests/support/scratch_folder.h"
+
+namespace tenon {
+namespace {
+
+using test::ScratchFolder;
+
+template <typename Action>
+std::string message_of(Action action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Writes beyond this many bytes fail as on a full disk, for as long as this lives.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    (void)std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST(WriteFile, ReplacesTheFileAndLeavesNothingElse) {
+  const ScratchFolder folder;
+  folder.put("a.txt", "old");
+  write_file(folder.path() / "a.txt", std::string("new\0text", 8));
+  EXPECT_EQ(folder.get("a.txt"), std::string("new\0text", 8));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.txt"});
+}
+
+TEST(WriteFile, LeavesTheOldFileWholeWhenTheDiskIsFull) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.put("a.txt", "old");
+  std::string message;
+  {
+    const FullDisk full_disk(1000);
+    message = message_of([&] { write_file(file, std::string(5000, 'x')); });
+  }
+  EXPECT_EQ(message, file.string() + ": cannot be written: File too large");
+  EXPECT_EQ(folder.get("a.txt"), "old");
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.txt"});
+}
+
+TEST(WriteFile, RefusesFoldersAndDevices) {
+  const ScratchFolder folder;
+  EXPECT_EQ(message_of([&] { write_file(folder.path(), "text"); }),
+            folder.path().string() + ": cannot be written: it is not a regular file");
+  EXPECT_EQ(message_of([] { write_file("/dev/null", "text"); }),
+            "/dev/null: cannot be written: it is not a regular file");
+  const std::filesystem::path nowhere = folder.path() / "no" / "a.txt";
+  EXPECT_EQ(message_of([&] { write_file(nowhere, "text"); }),
+            nowhere.string() + ": cannot be written: No such file or directory");
+}
+
+TEST(LoadPlan, ReadsWhatWriteFileWrote) {
+  const ScratchFolder folder;
+  write_file(folder.path() / "a.tnp", encode_plan(test::documented_plan()));
+  const Plan plan = load_plan(folder.path() / "a.tnp");
+  EXPECT_EQ(encode_plan(plan), encode_plan(test::documented_plan()));
+}
+
+TEST(LoadPlan, NamesFileByteFieldAndReason) {
+  const ScratchFolder folder;
+  std::vector<std::uint8_t> bytes = encode_plan(test::documented_plan());
+  const std::filesystem::path file = folder.path() / "a.tnp";
+  const auto message = [&] {
+    write_file(file, bytes);
+    return message_of([&] { (void)load_plan(file); });
+  };
+  bytes[4] = 2;
+  EXPECT_EQ(message(), file.string() +
+                           ": byte 4, version: another version of the format (this program reads "
+                           "version 1); plan again");
+  bytes[4] = 1;
+  bytes[100] ^= 1;
+  EXPECT_EQ(
+      message(),
+      file.string() + ": byte 392, checksum: the checksum does not match: damaged; plan again");
+  EXPECT_EQ(message_of([&] { (void)load_plan(folder.path() / "none.tnp"); }),
+            (folder.path() / "none.tnp").string() + ": cannot be read: No such file or directory");
+}
+
+TEST(Hash, GivesThePublishedValuesOfFnv1a) {
+  EXPECT_EQ(config::fnv1a_64({}), 0xCBF29CE484222325);
+  EXPECT_EQ(config::fnv1a_64(std::string("a")), 0xAF63DC4C8601EC8C);
+  EXPECT_EQ(config::fnv1a_64(std::string("foobar")), 0x85944171F73967E8);
+}
+
+}  // namespace
+}  // namespace tenon

@@ -1,0 +1,367 @@
+// The files in the tree load to what they say, and each bad line is refused with its place.
+
+#include "shared/config/load.h"
+
+#include <gtest/gtest.h>
+
+#include "shared/base/error.h"
+#include "tests/support/scratch_folder.h"
+
+namespace tenon {
+namespace {
+
+using test::ScratchFolder;
+
+constexpr const char* kTask = R"(name: tiny
+coordinates: [x, rz]
+held:
+  - {name: peg, cylinder: {diameter_m: 0.02, length_m: 0.1}, pose: {position_m: [0, 0, 0.05]}}
+environment:
+  - {name: wall, box_m: [1, 2, 3], pose: {position_m: [0, 0, 1], rotation_rad: [0, 0, 0.5]}}
+starts:
+  - {name: left, pose: {position_m: [-0.1, 0, 0]}, sigma_m: [0.03], sigma_rad: [0.02]}
+  - {name: right, pose: {position_m: [0.1, 0, 0]}, sigma_m: [0.04], sigma_rad: [0.02]}
+goal: {pose: {position_m: [0.2, 0, 0]}, tolerance_m: 0.002, uncertainty_m2: 2e-6}
+primitives: {step_m: 0.1, step_rad: 0.05, long_step_m: 1.0, direct_reach_m: 0.3}
+speeds: {approach_mps: 0.1, contact_mps: 0.05}
+contact:
+  force_on_N: 6.0
+  force_keep_N: 3.0
+  force_off_N: 1.5
+  debounce_s: 0.006
+  force_limit_N: 20.0
+compliance: {axes: [x, y, rz], mass_kg: 2, damping_Nspm: 1500, stiffness_Npm: 1000}
+search: {w1: 3, w2: 1.5}
+physics:
+  friction: {low: 0.1, nominal: 0.3, high: 0.6}
+  contact_stiffness_Npm: 5e4
+  rollout_step_s: 0.002
+)";
+
+constexpr const char* kRobot = R"(name: slide
+bus: {bitrate_bps: 500000, cycle_us: 4000, heartbeat_ms: 100, heartbeat_timeout_ms: 300, master_node: 127}
+arm: {response_lag_s: 0.004, stiffness_Npm: 1e6, measurement_delay_cycles: 1}
+joints:
+  - name: x
+    kind: prismatic
+    axis: [1, 0, 0]
+    node: 1
+    mode: 8
+    counts_per_m: -1e6
+    lower_m: -0.8
+    upper_m: 0.8
+    speed_max_mps: 1
+    acceleration_max_mps2: 10
+    effort_max_N: 400
+    rated_effort_N: 200
+    following_error_max_m: 0.005
+    moving_mass_kg: 12
+  - name: turn
+    kind: revolute
+    origin: {position_m: [0, 0, 0.1], rotation_rad: [0.5, 0, 0]}
+    axis: [0, 0, 1]
+    node: 2
+    mode: 7
+    counts_per_rad: 57295.779513
+    zero_counts: 100
+    lower_rad: -2
+    upper_rad: 2
+    speed_max_radps: 1
+    acceleration_max_radps2: 10
+    effort_max_Nm: 40
+    rated_effort_Nm: 20
+    following_error_max_rad: 0.01
+    moving_mass_kg: 2
+sensor:
+  node: 4
+  force_per_count_N: 0.01
+  torque_per_count_Nm: 0.0005
+  force_range_N: 300
+  torque_range_Nm: 15
+  force_noise_N: 0.1
+  torque_noise_Nm: 0.005
+)";
+
+constexpr const char* kCell = R"(name: bench
+robot: robots/slide.yaml
+task_in_base: {position_m: [0.1, 0.05, 0]}
+tool_in_flange: {position_m: [0, 0, -0.15]}
+sensor_in_flange: {position_m: [0, 0, 0]}
+payload: {mass_kg: 0.5, com_m: [0, 0, -0.1]}
+contact_stiffness_Npm: 5e4
+faults: {force_N: 60, torque_Nm: 10}
+)";
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return at == std::string::npos ? text : text.replace(at, what.size(), by);
+}
+
+/// In a good file, `what` becomes `by`, and the message is the file's name and `message`.
+struct BadLine {
+  const char* what;
+  const char* by;
+  const char* message;
+};
+
+template <typename Load>
+void expect_refusals(const char* good, const std::vector<BadLine>& lines, Load load) {
+  const ScratchFolder folder;
+  folder.put("robots/slide.yaml", kRobot);
+  EXPECT_NO_THROW(load(folder.put("good.yaml", good)));
+  for (const BadLine& line : lines) {
+    const std::filesystem::path file = folder.put("bad.yaml", replaced(good, line.what, line.by));
+    try {
+      load(file);
+      ADD_FAILURE() << "accepted: " << line.by;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), file.string() + line.message);
+    }
+  }
+}
+
+TEST(LoadTask, ReadsEveryValue) {
+  const ScratchFolder folder;
+  const Task task = load_task(folder.put("task.yaml", kTask));
+  EXPECT_EQ(task.name, "tiny");
+  EXPECT_EQ(task.coordinates, 0b100001);
+  ASSERT_EQ(task.held.size(), 1U);
+  EXPECT_EQ(task.held[0].kind, Shape::Kind::kCylinder);
+  EXPECT_EQ(task.held[0].size_m, Vector3(0.02, 0.02, 0.1));
+  EXPECT_EQ(task.held[0].pose.position_m, Vector3(0, 0, 0.05));
+  ASSERT_EQ(task.environment.size(), 1U);
+  EXPECT_EQ(task.environment[0].kind, Shape::Kind::kBox);
+  EXPECT_EQ(task.environment[0].size_m, Vector3(1, 2, 3));
+  EXPECT_NEAR(task.environment[0].pose.orientation.z(), std::sin(0.25), 1e-15);
+  ASSERT_EQ(task.starts.size(), 2U);
+  EXPECT_EQ(task.starts[1].name, "right");
+  EXPECT_EQ(task.starts[1].sigma, (Vector6() << 0.04, 0, 0, 0, 0, 0.02).finished());
+  EXPECT_EQ(task.goal.position_m, Vector3(0.2, 0, 0));
+  EXPECT_EQ(task.goal_uncertainty_m2, 2e-6);
+  EXPECT_EQ(task.step_rad, 0.05);
+  EXPECT_EQ(task.motion.speeds.contact_mps, 0.05);
+  EXPECT_EQ(task.motion.thresholds.debounce_us, 6000U);
+  EXPECT_EQ(task.motion.timeout_us, 10'000'000U);
+  EXPECT_EQ(task.compliance.compliant_axes, 0b100011);
+  EXPECT_EQ(task.w1, 3.0);
+  EXPECT_EQ(task.w2, 1.5);
+  EXPECT_EQ(task.distance_weight_per_m, Task{}.distance_weight_per_m);
+  EXPECT_EQ(task.friction.high, 0.6);
+  EXPECT_EQ(task.rollout_step_us, 2000);
+}
+
+TEST(LoadTask, HashIsThatOfTheBytes) {
+  const ScratchFolder folder;
+  const std::uint64_t hash = load_task(folder.put("a.yaml", kTask)).hash;
+  EXPECT_EQ(load_task(folder.put("b.yaml", kTask)).hash, hash);
+  EXPECT_NE(load_task(folder.put("c.yaml", std::string(kTask) + "\n")).hash, hash);
+}
+
+TEST(LoadTask, RefusesEachBadLineWithItsPlace) {
+  const std::vector<BadLine> lines = {
+      {"sigma_m: [0.03]", "sigma_m: [-0.03]",
+       ":8: starts[0].sigma_m[0] = -0.03, must be in (0, 1]"},
+      {"sigma_m: [0.03]", "sigma_m: [.nan]",
+       ":8: starts[0].sigma_m[0] = .nan, must be a number in (0, 1]"},
+      {"sigma_m: [0.03]", "sigma_m: [nan]", ":8: starts[0].sigma_m[0] = nan, must be in (0, 1]"},
+      {"sigma_m: [0.03]", "sigma_m: [1e999]",
+       ":8: starts[0].sigma_m[0] = 1e999, must be a number in (0, 1]"},
+      {"sigma_m: [0.03]", "sigma_m: [0.03, 0.03]",
+       ":8: starts[0].sigma_m: has 2 entries, must have 1"},
+      {"sigma_m: [0.03]", "sigma_m: 0.03", ":8: starts[0].sigma_m = 0.03, must be a list of 1"},
+      {", sigma_rad: [0.02]", "", ":8: starts[0]: the required key sigma_rad is missing"},
+      {"coordinates: [x, rz]", "coordinates: [x]",
+       ":8: starts[0].sigma_rad: no search coordinate has this unit"},
+      {"coordinates: [x, rz]", "coordinates: [x, w]",
+       ":2: coordinates[1] = w, must be one of: x, y, z, rx, ry, rz"},
+      {"coordinates: [x, rz]", "coordinates: [x, x]",
+       ":2: coordinates[1] = x, must be listed once"},
+      {"coordinates: [x, rz]", "coordinates: []",
+       ":2: coordinates: has 0 entries, must have 1 to 6"},
+      {"name: right", "name: left", ":9: starts[1].name = left, must be unique among the starts"},
+      {"name: wall", "name: peg", ":6: environment[0].name = peg, must be unique among the shapes"},
+      {"[-0.1, 0, 0]", "[-0.1, 0, 0.01]",
+       ":8: starts[0].pose: is 0.010000 m off the goal along z, which is not a search coordinate"},
+      {"box_m: [1, 2, 3]", "box_m: [1, 0, 3]",
+       ":6: environment[0].box_m[1] = 0, must be in (0, 100]"},
+      {"box_m: [1, 2, 3], ", "",
+       ":6: environment[0]: needs either box_m: [x, y, z] or cylinder: {diameter_m: d, length_m: "
+       "l}"},
+      {"length_m: 0.1", "length: 0.1",
+       ":4: held[0].cylinder.length: is an unknown key, known here: diameter_m, length_m"},
+      {"length_m: 0.1", "length_m: 0.1, diameter_m: 1",
+       ":4: held[0].cylinder.diameter_m: is given twice"},
+      {"name: tiny\n", "name: tiny\ncolour: red\n",
+       ":2: colour: is an unknown key, known here: name, coordinates, held, environment, starts, "
+       "particle_sigmas, goal, primitives, speeds, contact, compliance, search, physics"},
+      {"name: tiny\n", "", ":1: the required key name is missing"},
+      {"name: tiny", "name: tin\xC3\xBF",
+       ":1: name = tin\xC3\xBF, must be a name of 1 to 63 printable ASCII characters"},
+      {"name: tiny", "name: [a]",
+       ":1: name is a list, must be a name of 1 to 63 printable ASCII characters"},
+      {"tolerance_m: 0.002", "tolerance_m: two",
+       ":10: goal.tolerance_m = two, must be a number in (0, 1]"},
+      {"tolerance_m: 0.002", "tolerance_m: \"0.002\"",
+       ":10: goal.tolerance_m = 0.002, must be a number in (0, 1]"},
+      {"tolerance_m: 0.002",
+       "tolerance_m:", ":10: goal.tolerance_m is empty, must be a number in (0, 1]"},
+      {"pose: {position_m: [0.2, 0, 0]}, ", "", ":10: goal: the required key pose is missing"},
+      {"contact_mps: 0.05", "contact_mps: 0.2",
+       ":12: speeds.contact_mps = 0.2, must be in (0, 0.1]"},
+      {"long_step_m: 1.0", "long_step_m: 0.01",
+       ":11: primitives.long_step_m = 0.01, must be in [0.1, 10]"},
+      {"force_keep_N: 3.0", "force_keep_N: 7.0",
+       ":14: contact: 0 < force_off < force_keep < force_on does not hold: 1.5, 7, 6 N"},
+      {"force_limit_N: 20.0", "force_limit_N: 8.0",
+       ":14: contact: force_on = 6 N must be at most force_limit / 1.5 = 5.33333 N"},
+      {"axes: [x, y, rz]", "axes: [x, y]",
+       ":19: compliance.axes: lacks the search coordinate rz: a rigid axis feels no contact"},
+      {"w1: 3", "w1: 0.9", ":20: search.w1 = 0.9, must be in [1, 1000]"},
+      {"high: 0.6", "high: 0.2", ":22: physics.friction.high = 0.2, must be in [0.3, 2]"},
+      {"rollout_step_s: 0.002", "rollout_step_s: 0.006",
+       ":24: physics.rollout_step_s = 0.006, must be in [0.0001, 0.005]"},
+      {"coordinates: [x, rz]", "coordinates: [x, rz",
+       ":3: is not YAML: end of sequence flow not found"},
+      {"physics:\n", "---\n", ": must hold one YAML document, holds 2"},
+  };
+  expect_refusals(kTask, lines, [](const std::filesystem::path& file) { (void)load_task(file); });
+}
+
+TEST(LoadTask, RefusesFrictionThatLooksLikeContact) {
+  const ScratchFolder folder;
+  const auto file = folder.put("task.yaml", replaced(kTask, "high: 0.6", "high: 1.2"));
+  try {
+    (void)load_task(file);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what())
+                    .starts_with(file.string() + ":14: contact: force_on = 6 N must be at least"))
+        << error.what();
+  }
+}
+
+TEST(LoadRobot, ReadsEveryValue) {
+  const ScratchFolder folder;
+  const Robot robot = load_robot(folder.put("robot.yaml", kRobot));
+  EXPECT_EQ(robot.bitrate_bps, 500'000U);
+  EXPECT_EQ(robot.cycle_us, 4000U);
+  EXPECT_EQ(robot.heartbeat_timeout_ms, 300U);
+  EXPECT_EQ(robot.master_node, 127);
+  ASSERT_EQ(robot.joints.size(), 2U);
+  EXPECT_EQ(robot.joints[0].kind, Joint::Kind::kPrismatic);
+  EXPECT_EQ(robot.joints[0].counts_per_unit, -1e6);
+  EXPECT_EQ(robot.joints[0].mode, Joint::Mode::kCyclicSynchronousPosition);
+  EXPECT_EQ(robot.joints[0].rated_effort, 200.0);
+  EXPECT_EQ(robot.joints[1].kind, Joint::Kind::kRevolute);
+  EXPECT_EQ(robot.joints[1].mode, Joint::Mode::kInterpolatedPosition);
+  EXPECT_EQ(robot.joints[1].zero_counts, 100.0);
+  EXPECT_EQ(robot.joints[1].origin.position_m.z(), 0.1);
+  EXPECT_EQ(robot.joints[1].following_error_max, 0.01);
+  EXPECT_EQ(robot.sensor.torque_per_count_Nm, 0.0005);
+  EXPECT_EQ(robot.response_lag_s, 0.004);
+  EXPECT_EQ(robot.measurement_delay_cycles, 1);
+}
+
+TEST(LoadRobot, RefusesEachBadLineWithItsPlace) {
+  const std::vector<BadLine> lines = {
+      {"cycle_us: 4000", "cycle_us: 2500", ":2: bus.cycle_us = 2500, must be a multiple of 1000"},
+      {"cycle_us: 4000", "cycle_us: 4e3",
+       ":2: bus.cycle_us = 4e3, must be an integer in [1000, 20000]"},
+      {"bitrate_bps: 500000", "bitrate_bps: 600000",
+       ":2: bus.bitrate_bps = 600000, must be one of: 20000, 50000, 125000, 250000, 500000, "
+       "800000, 1000000"},
+      {"heartbeat_timeout_ms: 300", "heartbeat_timeout_ms: 100",
+       ":2: bus.heartbeat_timeout_ms = 100, must be in [101, 65535]"},
+      {"node: 2", "node: 1", ":23: joints[1].node = 1, must be a node that nothing else uses"},
+      {"node: 4", "node: 128", ":36: sensor.node = 128, must be in [1, 127]"},
+      {"master_node: 127", "master_node: 4",
+       ":2: bus.master_node = 4, must be a node that nothing else uses"},
+      {"mode: 8", "mode: 9", ":9: joints[0].mode = 9, must be one of: 7, 8"},
+      {"kind: prismatic", "kind: sliding",
+       ":6: joints[0].kind = sliding, must be one of: prismatic, revolute"},
+      {"kind: prismatic", "kind: revolute",
+       ":10: joints[0].counts_per_m: is an unknown key, known here: name, kind, origin, axis, "
+       "node, "
+       "mode, zero_counts, moving_mass_kg, counts_per_rad, lower_rad, upper_rad, speed_max_radps, "
+       "acceleration_max_radps2, effort_max_Nm, rated_effort_Nm, following_error_max_rad"},
+      {"    kind: prismatic\n", "", ":5: joints[0]: the required key kind is missing"},
+      {"axis: [1, 0, 0]", "axis: [1, 1, 0]", ":7: joints[0].axis: must have length 1"},
+      {"counts_per_m: -1e6", "counts_per_m: 0",
+       ":10: joints[0].counts_per_m = 0, must be other than 0"},
+      {"upper_m: 0.8", "upper_m: -0.9", ":12: joints[0].upper_m = -0.9, must be in (-0.8, 100]"},
+      {"force_range_N: 300", "force_range_N: 400",
+       ":39: sensor.force_range_N = 400, must be in (0, 327.67]"},
+  };
+  expect_refusals(kRobot, lines, [](const std::filesystem::path& file) { (void)load_robot(file); });
+}
+
+TEST(LoadCell, ReadsEveryValueAndTheRobotBesideIt) {
+  const ScratchFolder folder;
+  folder.put("robots/slide.yaml", kRobot);
+  const Cell cell = load_cell(folder.put("cell.yaml", kCell));
+  EXPECT_EQ(cell.name, "bench");
+  EXPECT_EQ(cell.robot.name, "slide");
+  EXPECT_EQ(cell.X_BT.position_m, Vector3(0.1, 0.05, 0));
+  EXPECT_EQ(cell.X_FP.position_m, Vector3(0, 0, -0.15));
+  EXPECT_EQ(cell.payload_com_m, Vector3(0, 0, -0.1));
+  EXPECT_EQ(cell.force_fault_N, 60.0);
+}
+
+TEST(LoadCell, RefusesEachBadLineWithItsPlace) {
+  const std::vector<BadLine> lines = {
+      {"mass_kg: 0.5", "mass_kg: -0.5", ":6: payload.mass_kg = -0.5, must be in [0, 100]"},
+      {"force_N: 60", "force_N: 301", ":8: faults.force_N = 301, must be in (0, 300]"},
+      {"torque_Nm: 10", "torque_Nm: 0", ":8: faults.torque_Nm = 0, must be in (0, 15]"},
+  };
+  expect_refusals(kCell, lines, [](const std::filesystem::path& file) { (void)load_cell(file); });
+}
+
+TEST(LoadCell, NamesTheRobotFileThatIsMissing) {
+  const ScratchFolder folder;
+  try {
+    (void)load_cell(folder.put("cell.yaml", kCell));
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), (folder.path() / "robots/slide.yaml").string() +
+                                ": cannot be read: No such file or directory");
+  }
+}
+
+TEST(ShippedFiles, BoxOnTableHasTwelveStartsInsideItsWalls) {
+  const Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml");
+  EXPECT_EQ(task.coordinates, 0b000011);
+  ASSERT_EQ(task.starts.size(), 12U);
+  for (std::size_t i = 0; i < task.starts.size(); ++i) {
+    const Start& start = task.starts[i];
+    EXPECT_EQ(start.name, std::to_string(i + 1));
+    EXPECT_EQ(start.sigma, (Vector6() << 0.03, 0.03, 0, 0, 0, 0).finished());
+    // The inner area is 1.00 x 0.80 m, half the box 0.05 m, the outermost draw 3 sigma away.
+    EXPECT_LE(std::abs(start.pose.position_m.x()) + 0.05 + 0.09, 0.5);
+    EXPECT_LE(std::abs(start.pose.position_m.y()) + 0.05 + 0.09, 0.4);
+  }
+  EXPECT_EQ(task.compliance.compliant_axes, 0b000011);
+  EXPECT_EQ(task.motion, ParameterSet{});
+  EXPECT_EQ(task.environment.size(), 5U);
+}
+
+TEST(ShippedFiles, GantryReachesEveryPlaceOfTheTable) {
+  const Cell cell = load_cell(TENON_SOURCE_DIR "/hw/cells/gantry3.yaml");
+  ASSERT_EQ(cell.robot.joints.size(), 3U);
+  // Tool to flange: the gantry's flange is where its joints are.
+  for (const double sign : {-1.0, 1.0}) {
+    const Vector3 tool = cell.X_BT.position_m + sign * Vector3(0.5, 0.4, 0.0);
+    const Vector3 flange = tool - cell.X_FP.position_m;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Joint& joint = cell.robot.joints[static_cast<std::size_t>(axis)];
+      EXPECT_EQ(joint.axis, Vector3::Unit(axis));
+      EXPECT_GT(flange[axis], joint.lower);
+      EXPECT_LT(flange[axis], joint.upper);
+    }
+  }
+  EXPECT_EQ(cell.robot.cycle_us, 2000U);
+  EXPECT_EQ(cell.robot.sensor.node, 4);
+}
+
+}  // namespace
+}  // namespace tenon

@@ -1,0 +1,294 @@
+// Plans to bytes and back, and everything that must not come back.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "shared/base/bytes.h"
+#include "shared/base/crc32c.h"
+#include "shared/base/error.h"
+#include "shared/plan/codec.h"
+#include "tests/shared/example_plans.h"
+
+namespace tenon {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using test::documented_plan;
+using test::long_plan;
+
+// Makes length and checksum right again, so that what lies behind them is looked at.
+void reseal(Bytes& bytes) {
+  store_le(std::span(bytes).subspan(8), static_cast<std::uint32_t>(bytes.size()));
+  const std::size_t covered = bytes.size() - 4;
+  store_le(std::span(bytes).subspan(covered), crc32c(std::span(bytes).first(covered)));
+}
+
+Plan decoded(const Bytes& bytes) {
+  const DecodedPlan result = decode_plan(bytes);
+  EXPECT_EQ(result.error, PlanError::kNone) << to_string(result.error) << ": " << result.field;
+  return result.plan.value_or(Plan{});
+}
+
+double rounded(double value) { return static_cast<float>(value); }
+
+TEST(PlanCodec, EveryFieldComesBackAsTheValueOfItsFloat) {
+  const Plan plan =
+      long_plan(0b011011, 15, {Outcome::kReached, Outcome::kContact, Outcome::kTimeout});
+  const Plan back = decoded(encode_plan(plan));
+
+  EXPECT_EQ(back.task_name, plan.task_name);
+  EXPECT_EQ(back.start_name, plan.start_name);
+  EXPECT_EQ(back.task_hash, plan.task_hash);
+  EXPECT_EQ(back.coordinates, plan.coordinates);
+  EXPECT_EQ(back.start, plan.start);
+  EXPECT_EQ(back.goal, plan.goal);
+  EXPECT_EQ(back.goal_tolerance_m, rounded(plan.goal_tolerance_m));
+  EXPECT_EQ(back.compliance.inertia_kgm2, rounded(plan.compliance.inertia_kgm2));
+  EXPECT_EQ(back.compliance.damping_Nspm, plan.compliance.damping_Nspm);
+  EXPECT_EQ(back.compliance.compliant_axes, plan.compliance.compliant_axes);
+  EXPECT_EQ(back.force_limit_N, plan.force_limit_N);
+  EXPECT_EQ(back.torque_limit_Nm, plan.torque_limit_Nm);
+  EXPECT_EQ(back.contact_stiffness_Npm, plan.contact_stiffness_Npm);
+  EXPECT_EQ(back.latency_max_s, rounded(plan.latency_max_s));
+  EXPECT_EQ(back.cost, plan.cost);
+  EXPECT_EQ(back.bound, plan.bound);
+  EXPECT_EQ(back.draws, plan.draws);
+  EXPECT_EQ(back.draws_at_goal, plan.draws_at_goal);
+  EXPECT_EQ(back.check_envelopes, plan.check_envelopes);
+  ASSERT_EQ(back.parameter_sets.size(), 2U);
+  EXPECT_EQ(back.parameter_sets[1].speeds.approach_mps, rounded(0.05));
+  EXPECT_EQ(back.parameter_sets[1].thresholds.torque_on_Nm, rounded(0.6));
+  EXPECT_EQ(back.parameter_sets[1].thresholds.debounce_us, 6000U);
+  EXPECT_EQ(back.parameter_sets[1].timeout_us, 10'000'000U);
+  EXPECT_EQ(back.parameter_sets[1].trigger_mask, ContactSignature{0x000F});
+
+  ASSERT_EQ(back.steps.size(), plan.steps.size());
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    EXPECT_EQ(back.steps[i].parameter_set, plan.steps[i].parameter_set);
+    EXPECT_EQ(back.steps[i].slow_from_m, rounded(plan.steps[i].slow_from_m));
+    for (int axis = 0; axis < 6; ++axis) {
+      EXPECT_EQ(back.steps[i].displacement[axis], rounded(plan.steps[i].displacement[axis]));
+    }
+    for (const Outcome outcome : kOutcomes) {
+      EXPECT_EQ(back.steps[i].rule(outcome).successor, plan.steps[i].rule(outcome).successor);
+    }
+    EXPECT_EQ(back.steps[i].rule(Outcome::kContact).envelope.always, ContactSignature{0x0001});
+    EXPECT_EQ(back.steps[i].rule(Outcome::kContact).envelope.possible, ContactSignature{0x0005});
+  }
+}
+
+TEST(PlanCodec, AnEnvelopeOnlyGrows) {
+  const Plan plan = long_plan(0b111111, 15, {Outcome::kContact});
+  const Plan back = decoded(encode_plan(plan));
+  int grown = 0;
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    const Envelope& before = plan.steps[i].rule(Outcome::kContact).envelope;
+    const Envelope& after = back.steps[i].rule(Outcome::kContact).envelope;
+    for (int axis = 0; axis < 6; ++axis) {
+      EXPECT_LE(after.travelled_min[axis], before.travelled_min[axis]);
+      EXPECT_GE(after.travelled_max[axis], before.travelled_max[axis]);
+      // By less than one unit in the last place of a float.
+      EXPECT_NEAR(after.travelled_min[axis], before.travelled_min[axis], 1e-7);
+      EXPECT_NEAR(after.travelled_max[axis], before.travelled_max[axis], 1e-7);
+      grown += after.travelled_min[axis] < before.travelled_min[axis] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(grown, 40);
+}
+
+TEST(PlanCodec, WhatWasDecodedEncodesToTheSameBytes) {
+  for (const Plan& plan :
+       {documented_plan(), long_plan(0b000011, 15, {Outcome::kReached, Outcome::kContact}),
+        long_plan(0b111111, 200, {Outcome::kRelease, Outcome::kBlocked})}) {
+    const Bytes bytes = encode_plan(plan);
+    EXPECT_EQ(encode_plan(decoded(bytes)), bytes);
+  }
+}
+
+TEST(PlanCodec, FifteenStepsFitInTwoKilobytes) {
+  EXPECT_LE(encode_plan(long_plan(0b000011, 15, {Outcome::kReached, Outcome::kContact})).size(),
+            1200U);
+  EXPECT_LE(encode_plan(long_plan(0b111111, 15, {Outcome::kContact})).size(), 1700U);
+}
+
+TEST(PlanCodec, EveryTruncationIsRefused) {
+  const Bytes bytes = encode_plan(long_plan(0b000011, 15, {Outcome::kReached, Outcome::kContact}));
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const DecodedPlan result = decode_plan(std::span(bytes).first(size));
+    EXPECT_FALSE(result.plan.has_value());
+    EXPECT_EQ(result.error, size < 209 ? PlanError::kTooShort : PlanError::kLength) << size;
+  }
+}
+
+TEST(PlanCodec, EverySingleFlippedBitIsRefused) {
+  Bytes bytes = encode_plan(long_plan(0b000011, 15, {Outcome::kReached, Outcome::kContact}));
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    const auto mask = static_cast<std::uint8_t>(1U << bit % 8);
+    bytes[bit / 8] ^= mask;
+    const DecodedPlan result = decode_plan(bytes);
+    bytes[bit / 8] ^= mask;
+    EXPECT_FALSE(result.plan.has_value()) << "bit " << bit;
+    PlanError expected = PlanError::kChecksum;
+    if (bit / 8 < 4) expected = PlanError::kMagic;
+    if (bit / 8 == 4 || bit / 8 == 5) expected = PlanError::kVersion;
+    if (bit / 8 >= 8 && bit / 8 < 12) expected = PlanError::kLength;
+    EXPECT_EQ(result.error, expected) << "bit " << bit;
+  }
+}
+
+TEST(PlanCodec, TruncationIsNamedEvenUnderARightLengthAndChecksum) {
+  const Bytes whole = encode_plan(documented_plan());
+  for (std::size_t size = 209; size < whole.size(); ++size) {
+    Bytes bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    reseal(bytes);
+    EXPECT_NE(decode_plan(bytes).error, PlanError::kNone) << size;
+  }
+  Bytes longer = whole;
+  longer.push_back(0);
+  reseal(longer);
+  EXPECT_EQ(decode_plan(longer).error, PlanError::kTrailing);
+  EXPECT_EQ(decode_plan(longer).offset, whole.size() - 4);
+}
+
+// Offsets as FORMAT.md's dump gives them.
+struct Mutation {
+  std::size_t offset;
+  Bytes bytes;
+  PlanError error;
+  const char* field;
+};
+
+TEST(PlanCodec, EveryBadValueIsNamedWithItsFieldAndByte) {
+  const Bytes nan = {0x00, 0x00, 0xC0, 0x7F};
+  const Bytes infinity = {0x00, 0x00, 0x80, 0x7F};
+  const Bytes minus_one = {0x00, 0x00, 0x80, 0xBF};
+  const Bytes zero = {0x00, 0x00, 0x00, 0x00};
+  const Bytes hundred = {0x00, 0x00, 0xC8, 0x42};
+  const std::vector<Mutation> mutations = {
+      {0x06, {0x02}, PlanError::kRange, "flags"},
+      {0x07, {0x00}, PlanError::kRange, "coordinates"},
+      {0x07, {0x40}, PlanError::kRange, "coordinates"},
+      {0x14, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}, PlanError::kNotFinite, "start_position_m"},
+      {0x14, {0, 0, 0, 0, 0, 0x88, 0xC3, 0x40}, PlanError::kRange, "start_position_m"},
+      {0x2C, {0, 0, 0, 0, 0, 0, 0xE0, 0x3F}, PlanError::kRange, "start_orientation"},
+      {0x84, zero, PlanError::kRange, "goal_tolerance_m"},
+      {0x88, nan, PlanError::kNotFinite, "mass_kg"},
+      {0x8C, minus_one, PlanError::kRange, "damping_Nspm"},
+      {0xA0, {0x40}, PlanError::kRange, "compliant_axes"},
+      {0xA1, infinity, PlanError::kNotFinite, "force_limit_N"},
+      {0xA1, minus_one, PlanError::kRange, "force_limit_N"},
+      {0xAD, hundred, PlanError::kRange, "latency_max_s"},
+      {0xB1, {0, 0, 0, 0, 0, 0, 0xF0, 0xBF}, PlanError::kRange, "cost"},
+      {0xB9, {0, 0, 0, 0, 0, 0, 0xE0, 0x3F}, PlanError::kRange, "bound"},
+      {0xC5, {0xC9}, PlanError::kRange, "draws_at_goal"},
+      {0xC9, {0x40}, PlanError::kText, "task_name"},
+      {0xCA, {0x0A}, PlanError::kText, "task_name"},
+      {0xDB, {0x00}, PlanError::kCount, "parameter_set_count"},
+      {0xDB, {0xC9}, PlanError::kCount, "parameter_set_count"},
+      {0xDB, {0xC8}, PlanError::kTruncated, "step_count"},
+      {0xDC, {0x00}, PlanError::kCount, "step_count"},
+      {0xDC, {0xC9}, PlanError::kCount, "step_count"},
+      {0xDC, {0xC8}, PlanError::kTruncated, "step_count"},
+      {0xDC, {0x04}, PlanError::kTruncated, "parameter_set"},
+      {0xDC, {0x02}, PlanError::kSuccessor, "successor"},
+      {0xDD, hundred, PlanError::kRange, "approach_mps"},
+      {0xFD, hundred, PlanError::kRange, "thresholds"},
+      {0x101, zero, PlanError::kRange, "force_keep_N"},
+      {0x101, {0x00, 0x00, 0xE0, 0x40}, PlanError::kRange, "thresholds"},
+      {0x118, {0x01}, PlanError::kRange, "debounce_us"},
+      {0x119, zero, PlanError::kRange, "timeout_us"},
+      {0x11D, {0xFF, 0x1F}, PlanError::kRange, "trigger_mask"},
+      {0x11F, {0x01}, PlanError::kIndex, "parameter_set"},
+      {0x120, {0x22}, PlanError::kRange, "outcomes"},
+      {0x121, minus_one, PlanError::kRange, "slow_from_m"},
+      {0x125, nan, PlanError::kNotFinite, "displacement"},
+      {0x125, hundred, PlanError::kRange, "displacement"},
+      {0x12D, {0x00}, PlanError::kSuccessor, "successor"},
+      {0x12D, {0x03}, PlanError::kSuccessor, "successor"},
+      {0x12D, {0xFF}, PlanError::kSuccessor, "successor"},
+      {0x150, {0x01}, PlanError::kSuccessor, "successor"},
+      {0x12E, {0x00, 0x10}, PlanError::kRange, "always"},
+      {0x12E, {0x03}, PlanError::kRange, "possible"},
+      {0x132, infinity, PlanError::kNotFinite, "travelled_min"},
+      {0x136, minus_one, PlanError::kRange, "travelled_max"},
+  };
+  const Bytes whole = encode_plan(documented_plan());
+  for (const Mutation& mutation : mutations) {
+    Bytes bytes = whole;
+    std::copy(mutation.bytes.begin(), mutation.bytes.end(),
+              bytes.begin() + static_cast<std::ptrdiff_t>(mutation.offset));
+    reseal(bytes);
+    const DecodedPlan result = decode_plan(bytes);
+    EXPECT_FALSE(result.plan.has_value()) << mutation.field;
+    EXPECT_STREQ(to_string(result.error), to_string(mutation.error)) << mutation.field;
+    EXPECT_EQ(result.field, mutation.field);
+  }
+}
+
+TEST(PlanCodec, RandomDamageUnderARightChecksumIsRefusedOrHasOneEncoding) {
+  std::mt19937 random(7);
+  const Bytes whole = encode_plan(documented_plan());
+  int accepted = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    Bytes bytes = whole;
+    for (int i = 0; i <= round % 3; ++i) {
+      bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+    }
+    reseal(bytes);
+    const DecodedPlan result = decode_plan(bytes);
+    EXPECT_EQ(result.plan.has_value(), result.error == PlanError::kNone);
+    if (!result.plan) continue;
+    ++accepted;
+    EXPECT_EQ(encode_plan(*result.plan), bytes);
+  }
+  EXPECT_GT(accepted, 1000);  // most bytes are harmless digits of a float
+}
+
+std::string refusal(const Plan& plan) {
+  try {
+    (void)encode_plan(plan);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(PlanCodec, EncodingRefusesWhatCannotBeRepresented) {
+  const auto changed = [](auto change) {
+    Plan plan = documented_plan();
+    change(plan);
+    return refusal(plan);
+  };
+  const std::string prefix = "plan cannot be encoded: ";
+  EXPECT_EQ(changed([](Plan&) {}), "accepted");
+  EXPECT_EQ(changed([](Plan& p) { p.task_name = std::string(64, 'a'); }),
+            prefix + "a name is longer than 63 bytes");
+  EXPECT_EQ(changed([](Plan& p) { p.steps.resize(201, p.steps.front()); }),
+            prefix + "201 steps, at most 200");
+  EXPECT_EQ(changed([](Plan& p) { p.parameter_sets.resize(201); }),
+            prefix + "201 parameter sets, at most 200");
+  EXPECT_EQ(changed([](Plan& p) { p.steps[1].displacement[2] = 1e-6; }),
+            prefix +
+                "step 1 has a displacement or an envelope along axis 2, which is not one of "
+                "the plan's coordinates");
+  EXPECT_EQ(changed([](Plan& p) { p.steps.clear(); }),
+            prefix + "step_count: a count outside its range (byte 220)");
+  EXPECT_EQ(changed([](Plan& p) { p.steps[2].displacement[0] = std::nan(""); }),
+            prefix + "displacement: not a finite number (byte 363)");
+  EXPECT_EQ(changed([](Plan& p) { p.cost = std::numeric_limits<double>::infinity(); }),
+            prefix + "cost: not a finite number (byte 177)");
+  EXPECT_EQ(changed([](Plan& p) { p.goal_tolerance_m = 1e-60; }),  // no float but 0
+            prefix + "goal_tolerance_m: a value outside its range (byte 132)");
+  EXPECT_EQ(changed([](Plan& p) { p.steps[0].outcomes[1].successor = 0; }),
+            prefix + "successor: a successor that is neither a later step nor done (byte 301)");
+  EXPECT_EQ(changed([](Plan& p) { p.start_name = "\xC3\xA9"; }),
+            prefix +
+                "start_name: a name that is not at most 63 printable ASCII characters "
+                "(byte 218)");
+}
+
+}  // namespace
+}  // namespace tenon

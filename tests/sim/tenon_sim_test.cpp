@@ -1,0 +1,114 @@
+// The executable: what it prints, what it answers over TCP, what it leaves behind, how it refuses.
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/sim_process.h"
+
+namespace tenon::sim {
+namespace {
+
+using tests::SimProcess;
+
+class TenonSimTest : public ::testing::Test {
+ protected:
+  static int connect_to(const SimProcess& sim) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(sim.port()));
+    inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
+    const int connection = socket(AF_INET, SOCK_STREAM, 0);
+    EXPECT_EQ(connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    return connection;
+  }
+
+  test::ScratchFolder folder;
+};
+
+std::string ask(int connection, const std::string& line, const std::string& wanted) {
+  EXPECT_EQ(write(connection, line.data(), line.size()), static_cast<ssize_t>(line.size()));
+  std::string heard;
+  char buffer[256];
+  while (heard.find(wanted) == std::string::npos) {
+    const ssize_t count = read(connection, buffer, sizeof buffer);
+    if (count <= 0) break;
+    heard.append(buffer, static_cast<std::size_t>(count));
+  }
+  return heard;
+}
+
+TEST_F(TenonSimTest, AnswersOverTcpAndLeavesTheWholeTruthOnInterrupt) {
+  const std::string truth_file = folder.path() / "truth.json";
+  SimProcess sim(folder.path(), "2", {"--seed", "11", "--json", truth_file});
+  const int connection = connect_to(sim);
+  const std::string answer = ask(connection, "S8\rO\rt60284000100000000000\r", "t5828");
+  EXPECT_NE(answer.find("t58284300100092010200\r"), std::string::npos) << answer;
+  sim.process().send(SIGINT);
+  EXPECT_EQ(sim.process().wait(), 0);
+  close(connection);
+  EXPECT_EQ(sim.process().out().rfind("seed 11\nlistening on 127.0.0.1:", 0), 0U);
+  EXPECT_EQ(sim.process().err(), "");
+
+  const auto truth = nlohmann::json::parse(std::ifstream(truth_file));
+  EXPECT_EQ(truth["task"], "box_on_table_2d");
+  EXPECT_EQ(truth["start"], "2");
+  EXPECT_EQ(truth["seed"], 11);
+  EXPECT_NE(truth["offset"]["x_m"], 0.0);
+  EXPECT_EQ(truth["offset"]["z_m"], 0.0);
+  EXPECT_EQ(truth["drives"].size(), 3U);
+  EXPECT_TRUE(truth["drives"][0]["brake_engaged"]);
+  // The offset is nobody's to know: neither output names it.
+  EXPECT_EQ(sim.process().out().find(truth["offset"]["x_m"].dump().substr(0, 6)),
+            std::string::npos);
+}
+
+TEST_F(TenonSimTest, EndsByItselfWhenItsOnlyClientHasGone) {
+  SimProcess sim(folder.path(), "2", {"--offset", "x_m=0.01", "--once"});
+  const int connection = connect_to(sim);
+  ask(connection, "O\rt60284000100000000000\r", "t5828");
+  close(connection);
+  EXPECT_EQ(sim.process().wait(), 0);
+}
+
+TEST_F(TenonSimTest, BadInputIsOneLineAndStatusTwo) {
+  const std::string can = "slcan-listen://127.0.0.1:0";
+  const std::vector<std::vector<std::string>> bad = {
+      {"--can", can, "--cell", "missing.yaml"},
+      {"--can", can, "--start", "99"},
+      {"--can", can, "--offset", "z_m=0.1"},
+      {"--can", can, "--offset", "x_m=0.1", "--seed", "1"},
+      {"--can", "nonsense"},
+      {},
+  };
+  for (const std::vector<std::string>& more : bad) {
+    std::vector<std::string> all = {
+        TENON_SIM_EXE, "--cell", tests::gantry_cell_file(), "--task", tests::box_task_file(),
+        "--start",     "2"};
+    // The last of an option given twice would be refused as such: replace instead.
+    for (std::size_t i = 0; i + 1 < more.size(); i += 2) {
+      const auto at = std::find(all.begin(), all.end(), more[i]);
+      if (at != all.end()) all.erase(at, at + 2);
+      all.insert(all.end(), {more[i], more[i + 1]});
+    }
+    tests::ChildProcess child(folder.path(), all);
+    EXPECT_EQ(child.wait(), 2) << ::testing::PrintToString(more);
+    const std::string error = child.err();
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+    EXPECT_EQ(child.out().find("listening"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace tenon::sim

@@ -1,0 +1,82 @@
+#pragma once
+// The whole chain in one process and in virtual time: executor, CANopen master, in-process bus,
+// virtual arm. No thread, no clock, no sleep.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "executor/controller.h"
+#include "executor/cycle_runner.h"
+#include "hw/can/in_process_bus.h"
+#include "hw/canopen_arm.h"
+#include "shared/cell/cell.h"
+#include "shared/plan/plan.h"
+#include "shared/task/task.h"
+#include "sim/virtual_arm/virtual_cell.h"
+
+namespace tenon::tests {
+
+/// One run of a plan. Use it on one thread, the one that made it.
+class Lockstep {
+ public:
+  struct Options {
+    std::string start;
+    std::uint64_t seed = 1;
+    Vector6 offset = Vector6::Zero();
+    executor::Controller::Parameters controller;
+  };
+  struct Result {
+    executor::Ending ending;
+    sim::Truth truth;
+    std::size_t steps = 0;
+    std::int64_t cycles = 0;
+    std::string reason;  ///< one line
+  };
+
+  Lockstep(const Cell& cell, const Task& task, const Plan& plan, const Options& options,
+           executor::CycleSink* sink = nullptr);
+
+  /// Brings the arm up. False: it failed, see arm().fault().
+  bool prepare();
+  /// One control cycle. False once the run is over.
+  bool cycle();
+  /// prepare() and cycles to the end.
+  Result run();
+  /// As it stands.
+  [[nodiscard]] Result result() const;
+
+  /// Virtual time goes on without the executor: what a killed process looks like from the bus.
+  void leave_alone(double duration_s);
+
+  [[nodiscard]] hw::InProcessBus& bus() { return bus_; }
+  [[nodiscard]] hw::CanopenArm& arm() { return *arm_; }
+  [[nodiscard]] executor::Controller& controller() { return *controller_; }
+  [[nodiscard]] executor::CycleRunner& runner() { return *runner_; }
+  [[nodiscard]] sim::VirtualCell& cell() { return *virtual_cell_; }
+  [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
+
+ private:
+  void let_cell_answer(std::int64_t now_ns);
+
+  Cell cell_description_;
+  Plan plan_;
+  hw::InProcessBus bus_;
+  CanBus& master_;
+  CanBus& devices_;
+  std::unique_ptr<hw::CanopenArm> arm_;
+  std::unique_ptr<executor::Controller> controller_;
+  std::unique_ptr<executor::CycleRunner> runner_;
+  std::unique_ptr<sim::VirtualCell> virtual_cell_;
+  std::int64_t now_ns_ = 0;
+  std::int64_t cycles_ = 0;
+};
+
+/// An offset of the environment: normal with the start's sigma on every search coordinate. Its
+/// Mahalanobis distance comes back in `distance`.
+[[nodiscard]] Vector6 draw_offset(const Task& task, const Start& start, std::uint64_t seed,
+                                  double& distance);
+
+}  // namespace tenon::tests

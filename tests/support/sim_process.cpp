@@ -1,0 +1,38 @@
+#include "tests/support/sim_process.h"
+
+#include <stdexcept>
+
+namespace tenon::tests {
+namespace {
+
+std::vector<std::string> command(const std::string& ready_file, const std::string& start,
+                                 const std::vector<std::string>& more, const std::string& cell) {
+  std::vector<std::string> all = {
+      TENON_SIM_EXE,  "--cell",        cell.empty() ? gantry_cell_file() : cell,
+      "--task",       box_task_file(), "--start",
+      start,          "--can",         "slcan-listen://127.0.0.1:0",
+      "--ready-file", ready_file};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+}  // namespace
+
+std::string gantry_cell_file() { return TENON_SOURCE_DIR "/hw/cells/gantry3.yaml"; }
+
+std::string box_task_file() { return TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml"; }
+
+SimProcess::SimProcess(const std::filesystem::path& folder, const std::string& start,
+                       const std::vector<std::string>& more, const std::string& cell)
+    : process_(folder, command(folder / "ready", start, more, cell)) {
+  if (!process_.wait_until([&] { return std::filesystem::exists(folder / "ready"); })) {
+    throw std::runtime_error("tenon-sim did not start: " + process_.err());
+  }
+  // "listening on 127.0.0.1:PORT", the last line so far.
+  const std::string said = process_.out();
+  port_ = std::stoi(said.substr(said.rfind(':') + 1));
+}
+
+std::string SimProcess::uri() const { return "slcan://127.0.0.1:" + std::to_string(port_); }
+
+}  // namespace tenon::tests
