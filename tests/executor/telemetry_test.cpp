@@ -75,14 +75,14 @@ TEST(Telemetry, TheLogHoldsEveryCycleEveryStepAndTheSummary) {
 }
 
 struct Inbox {
-  void cycle(const lcm::ReceiveBuffer* /*b*/, const std::string& /*c*/,
-             const tenon::cycle_state_t* m) {
-    last = *m;
-    ++cycles;
+  static void cycle(const lcm::ReceiveBuffer* /*b*/, const std::string& /*c*/,
+                    const tenon::cycle_state_t* m, Inbox* inbox) {
+    inbox->last = *m;
+    ++inbox->cycles;
   }
-  void step(const lcm::ReceiveBuffer* /*b*/, const std::string& /*c*/,
-            const tenon::step_event_t* /*m*/) {
-    ++steps;
+  static void step(const lcm::ReceiveBuffer* /*b*/, const std::string& /*c*/,
+                   const tenon::step_event_t* /*m*/, Inbox* inbox) {
+    ++inbox->steps;
   }
   tenon::cycle_state_t last{};
   std::uint64_t cycles = 0;
@@ -93,8 +93,8 @@ TEST(Telemetry, ASubscriberGetsWhatTheControllerDid) {
   const auto queue = std::make_shared<lcm::LCM>("memq://");
   ASSERT_TRUE(queue->good());
   Inbox inbox;
-  queue->subscribe(kCycleChannel, &Inbox::cycle, &inbox)->setQueueCapacity(0);
-  queue->subscribe(kStepChannel, &Inbox::step, &inbox)->setQueueCapacity(0);
+  queue->subscribeFunction(kCycleChannel, &Inbox::cycle, &inbox)->setQueueCapacity(0);
+  queue->subscribeFunction(kStepChannel, &Inbox::step, &inbox)->setQueueCapacity(0);
   const RunResult result = published_run({queue});
   while (queue->handleTimeout(0) > 0) {
   }
