@@ -5,7 +5,7 @@
 #   ./demo.sh [--seed N] [--start NAME] [--task NAME] [--cell NAME] [--output DIR]
 #
 # Exit status 0: the part ended within the task's tolerance of its goal. 1: it did not; the reason is
-# printed. 2: bad usage.
+# printed. 2: bad usage or bad input.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -32,12 +32,10 @@ while (($#)); do
 done
 
 .ci/setup.sh build
-build_log=$(mktemp)
-if ! { cmake --preset release && cmake --build --preset release; } >"$build_log" 2>&1; then
-  cat "$build_log" >&2
+if ! build_log=$( (cmake --preset release && cmake --build --preset release) 2>&1); then
+  printf '%s\n' "$build_log" >&2
   exit 1
 fi
-rm -f "$build_log"
 bin=build/release/bin
 task_file=planner/tasks/$task.yaml cell_file=hw/cells/$cell.yaml
 mkdir -p "$output"
@@ -78,5 +76,5 @@ echo
 echo "== What really happened (known to the simulator alone)"
 grep -v '^listening' "$output/sim.out"
 echo "Look at $output/plan.html (why the plan works); the run's telemetry and CAN log lie beside it."
-if ((executed != 0)); then exit 1; fi
+if ((executed != 0)); then exit "$executed"; fi
 grep -q '"within_tolerance": true' "$output/truth.json"
