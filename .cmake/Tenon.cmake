@@ -15,7 +15,7 @@
 set(TENON_LIBRARIES shared shared_config lcmtypes planner executor hw sim)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
-set(TENON_MAY_USE_shared_config shared yaml-cpp nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_shared_config shared yaml-cpp urdfdom::urdfdom nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
 set(TENON_MAY_USE_planner       shared Threads::Threads nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_executor      shared lcmtypes LCM::lcm Threads::Threads

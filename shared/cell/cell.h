@@ -11,10 +11,11 @@ namespace tenon {
 struct Cell {
   std::string name;
   Robot robot;
-  Pose X_BT;                     ///< task frame in the robot's base frame
-  Pose X_FP;                     ///< tool frame (tip of the held part) in the flange frame
-  Pose X_FS;                     ///< sensor frame in the flange frame
-  double payload_mass_kg = 0.0;  ///< beyond the sensor
+  Vector3 up_B = Vector3::UnitZ();  ///< against gravity, in base axes; unit length
+  Pose X_BT;                        ///< task frame in the robot's base frame
+  Pose X_FP;                        ///< tool frame (tip of the held part) in the flange frame
+  Pose X_FS;                        ///< sensor frame in the flange frame
+  double payload_mass_kg = 0.0;     ///< beyond the sensor
   Vector3 payload_com_m = Vector3::Zero();  ///< in the sensor frame
   double contact_stiffness_Npm = 5e4;       ///< k_e, in series with arm and sensor
   double force_fault_N = 60.0;              ///< beyond: stop

@@ -1,5 +1,5 @@
 #pragma once
-// A robot as hw/robots/NAME/robot.yaml gives it.
+// A robot as hw/robots/NAME gives it: its URDF the mechanics, robot.yaml the drives and the bus.
 
 #include <cstdint>
 #include <string>
@@ -8,6 +8,13 @@
 #include "shared/math/pose.h"
 
 namespace tenon {
+
+/// Mass of a link, in the link's frame: that of the joint before it, moving with it.
+struct LinkInertia {
+  double mass_kg = 0.0;
+  Vector3 com_m = Vector3::Zero();
+  Eigen::Matrix3d inertia_kgm2 = Eigen::Matrix3d::Zero();  ///< about the centre of mass
+};
 
 struct Joint {
   enum class Kind : std::uint8_t { kPrismatic, kRevolute };
@@ -27,7 +34,8 @@ struct Joint {
   double effort_max = 0.0;           ///< N or Nm
   double rated_effort = 0.0;         ///< N or Nm, unit of 6077h is a thousandth of it
   double following_error_max = 0.0;  ///< m or rad, written to 6065h
-  double moving_mass_kg = 0.0;       ///< of the link behind the joint
+  double stiffness = 0.0;            ///< N/m or Nm/rad, of servo and gear under load
+  LinkInertia link;                  ///< the link behind the joint
 };
 
 /// A force/torque node: two TPDOs of four little-endian i16 (three values and a sample counter).
@@ -51,6 +59,9 @@ struct Robot {
   std::uint32_t heartbeat_ms = 100;  ///< of every node and of the master
   std::uint32_t heartbeat_timeout_ms = 300;
   std::uint8_t master_node = 127;
+  /// Joints whose targets share a frame: 1, or 2 where single ones would overload the bus. Packed
+  /// targets travel without controlwords, which then have frames of their own, sent on change.
+  int targets_per_frame = 1;
   double response_lag_s = 0.0;       ///< tau_arm: setpoint to motion
   double stiffness_Npm = 1e6;        ///< of the arm at the tool, physical
   int measurement_delay_cycles = 1;  ///< n

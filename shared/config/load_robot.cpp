@@ -91,7 +91,7 @@ Joint read_joint(const Value& value, std::set<std::int64_t>& nodes) {
   joint.effort_max = map.number(keys.effort_max, positive_to(1e5));
   joint.rated_effort = map.number(keys.rated_effort, positive_to(1e5));
   joint.following_error_max = map.number(keys.following_error_max, positive_to(1.0));
-  joint.moving_mass_kg = map.number("moving_mass_kg", positive_to(1e3));
+  joint.link.mass_kg = map.number("moving_mass_kg", positive_to(1e3));
   return joint;
 }
 

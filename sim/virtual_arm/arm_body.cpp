@@ -49,7 +49,7 @@ void ArmBody::build_links(const Cell& cell) {
   Pose X_BL;
   dBodyID parent = nullptr;
   double carried_kg = std::max(cell.payload_mass_kg, kPayloadMassMin_kg);
-  for (const Joint& joint : cell.robot.joints) carried_kg += joint.moving_mass_kg;
+  for (const Joint& joint : cell.robot.joints) carried_kg += joint.link.mass_kg;
   for (const Joint& joint : cell.robot.joints) {
     if (joint.kind != Joint::Kind::kPrismatic) {
       throw InputError("robot " + cell.robot.name + ": joint " + joint.name +
@@ -58,7 +58,7 @@ void ArmBody::build_links(const Cell& cell) {
     X_BL = compose(X_BL, joint.origin);
     const Vector3 axis = X_BL.orientation * joint.axis;
     ServoJoint servo;
-    servo.link = make_body(world_, X_BL, joint.moving_mass_kg, kLinkRadius_m);
+    servo.link = make_body(world_, X_BL, joint.link.mass_kg, kLinkRadius_m);
     servo.slider = dJointCreateSlider(world_.id(), nullptr);
     dJointAttach(servo.slider, servo.link, parent);
     dJointSetSliderAxis(servo.slider, axis.x(), axis.y(), axis.z());
@@ -67,7 +67,7 @@ void ArmBody::build_links(const Cell& cell) {
     servo.effort_max_N = joint.effort_max;
     servo.stiffness_Npm = cell.robot.stiffness_Npm;
     servo.damping_Nspm = 2.0 * std::sqrt(servo.stiffness_Npm * carried_kg);
-    carried_kg -= joint.moving_mass_kg;
+    carried_kg -= joint.link.mass_kg;
     parent = servo.link;
     joints_.push_back(servo);
   }

@@ -33,7 +33,7 @@ inline Cell gantry_cell() {
     joint.acceleration_max = 10.0;
     joint.effort_max = 400.0;
     joint.rated_effort = 200.0;
-    joint.moving_mass_kg = masses_kg[static_cast<std::size_t>(axis)];
+    joint.link.mass_kg = masses_kg[static_cast<std::size_t>(axis)];
     cell.robot.joints.push_back(joint);
   }
   cell.robot.sensor.node = 4;
