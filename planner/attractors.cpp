@@ -1,35 +1,43 @@
 #include "planner/attractors.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 namespace tenon::planner {
 namespace {
 
-constexpr std::size_t kMaxAttractors = 8;
+// Guides take turns, so every further one multiplies the expansions.
+constexpr std::size_t kMaxGuides = 2;
+// How far beyond w2 times the anchor a guide may begin: not at all.
+constexpr double kWithinAnchor = 0.98;
 
-struct Candidate {
-  BeliefSummary end;
-  double detour_m = 0.0;  // start to attractor to goal
-};
-
-class AttractorSearch {
+class GuideSearch {
  public:
-  AttractorSearch(const Task& task, const Belief& start, SuccessorEngine& succ)
+  GuideSearch(const Task& task, const Belief& start, SuccessorEngine& succ)
       : task_(task),
-        metric_(metric_of(task)),
         primitives_(long_primitives(task)),
         start_(start),
         seed_(summarise(start, task)),
         succ_(succ) {}
 
-  /// Pushes from `belief`, then once more from whatever became more certain.
-  void push_from(const Belief& belief, int depth) {
-    for (const auto& end : succ_.successors(belief, primitives_)) {
-      if (!end) continue;
-      const BeliefSummary summary = summarise(*end, task_);
-      if (!(summary.uncertainty_m2 < task_.attractor_ratio * seed_.uncertainty_m2)) continue;
-      keep(summary);
-      if (depth > 1) push_from(*end, depth - 1);
+  /// Pushes along every axis that has not been pushed along yet, and on from there.
+  void push_from(const Belief& belief, const std::vector<ContactAttractor>& before) {
+    std::vector<Primitive> pushes = primitives_;
+    std::erase_if(pushes, [&](const Primitive& push) { return contains(before, axis_of(push)); });
+    const BeliefSummary from = summarise(belief, task_);
+    const auto ends = succ_.successors(belief, pushes);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (!ends[i]) continue;
+      const int axis = axis_of(pushes[i]);
+      const BeliefSummary end = summarise(*ends[i], task_);
+      const bool together = end.spread[axis] < task_.attractor_ratio * from.spread[axis];
+      if (!together || end.uncertainty_m2 >= from.uncertainty_m2) continue;
+      std::vector<ContactAttractor> contacts = before;
+      contacts.push_back({axis, end.mean, end.spread[axis], end.uncertainty_m2});
+      keep(contacts);
+      if (end.uncertainty_m2 > task_.goal_uncertainty_m2) push_from(*ends[i], contacts);
     }
   }
 
@@ -44,40 +52,72 @@ class AttractorSearch {
     return belief;
   }
 
-  /// Where a certain tool that is drawn out of the goal along a contact loses it: the mouth of a
-  /// hole. The tool first presses against each side of the goal.
-  [[nodiscard]] std::vector<Pose> mouths() {
+  /// The nearest place where a certain tool that is drawn out of the goal along a contact loses it.
+  /// The tool first presses against each side of the goal.
+  [[nodiscard]] std::optional<Pose> mouth() {
     Particle certain = start_.particles.front();
     certain.pose = task_.goal;
-    std::vector<Pose> poses;
+    std::optional<Pose> nearest;
+    double nearest_m = std::numeric_limits<double>::infinity();
     for (const auto& pressed : succ_.successors(Belief{{certain}}, primitives_)) {
       if (!pressed || pressed->particles.front().signature.count() == 0) continue;
+      const ContactSignature before = pressed->particles.front().signature;
       const auto ends = succ_.successors(*pressed, primitives_);
       for (std::size_t i = 0; i < ends.size(); ++i) {
-        const ContactSignature before = pressed->particles.front().signature;
         if (!ends[i] || pushes_along(primitives_[i], before)) continue;
         const Particle& end = ends[i]->particles.front();
-        if (end.signature.count() < before.count()) add_apart(end.pose, poses);
+        const double away_m = distance(end.pose, task_.goal, metric_of(task_));
+        if (end.signature.count() >= before.count() || away_m >= nearest_m) continue;
+        nearest = end.pose;
+        nearest_m = away_m;
       }
     }
-    return poses;
+    return nearest;
   }
 
-  [[nodiscard]] std::vector<Candidate> take() {
-    std::stable_sort(found_.begin(), found_.end(), [](const Candidate& a, const Candidate& b) {
-      return a.detour_m < b.detour_m;
-    });
-    if (found_.size() > kMaxAttractors) found_.resize(kMaxAttractors);
+  /// The cheapest guides, scaled.
+  [[nodiscard]] std::vector<Guide> take() {
+    const auto cost = [&](const Guide& guide) { return foliated_heuristic(seed_, guide, task_); };
+    const auto left_m2 = [](const Guide& guide) { return guide.contacts.back().uncertainty_m2; };
+    double enough_m2 = std::numeric_limits<double>::infinity();
+    for (const Guide& guide : found_) enough_m2 = std::min(enough_m2, left_m2(guide));
+    enough_m2 = std::max(enough_m2, task_.goal_uncertainty_m2);
+    std::erase_if(found_, [&](const Guide& guide) { return left_m2(guide) > enough_m2; });
+    std::stable_sort(found_.begin(), found_.end(),
+                     [&](const Guide& a, const Guide& b) { return cost(a) < cost(b); });
+    if (found_.size() > kMaxGuides) found_.resize(kMaxGuides);
+    const double allowed = kWithinAnchor * task_.w2 * anchor_heuristic(seed_, task_);
+    for (Guide& guide : found_) {
+      const double whole = cost(guide);
+      guide.contact_scale = 0.0;
+      const double way = cost(guide);
+      guide.contact_scale = std::clamp((allowed - way) / (whole - way), 0.0, 1.0);
+    }
     return std::move(found_);
   }
 
  private:
-  void keep(const BeliefSummary& end) {
-    for (const Candidate& other : found_) {
-      if (distance(other.end.mean, end.mean, metric_) < 0.5 * task_.step_m) return;
+  /// The step labels count two directions an axis.
+  [[nodiscard]] static int axis_of(const Primitive& push) { return push.label / 2; }
+
+  [[nodiscard]] static bool contains(const std::vector<ContactAttractor>& contacts, int axis) {
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [axis](const ContactAttractor& contact) { return contact.axis == axis; });
+  }
+
+  /// Unless the same faces are known in the same order.
+  void keep(const std::vector<ContactAttractor>& contacts) {
+    const auto same_face = [this](const ContactAttractor& a, const ContactAttractor& b) {
+      const double apart = std::abs(displacement_between(a.mean, b.mean)[a.axis]);
+      return a.axis == b.axis && apart < 0.5 * (a.axis < 3 ? task_.step_m : task_.step_rad);
+    };
+    for (const Guide& other : found_) {
+      if (std::equal(contacts.begin(), contacts.end(), other.contacts.begin(), other.contacts.end(),
+                     same_face)) {
+        return;
+      }
     }
-    found_.push_back(
-        {end, distance(seed_.mean, end.mean, metric_) + distance(end.mean, task_.goal, metric_)});
+    found_.push_back({contacts, {task_.goal}, 1.0});
   }
 
   /// Into a held contact or straight away from it.
@@ -88,39 +128,31 @@ class AttractorSearch {
     return false;
   }
 
-  void add_apart(const Pose& pose, std::vector<Pose>& poses) const {
-    for (const Pose& other : poses) {
-      if (distance(other, pose, metric_) < 0.5 * task_.step_m) return;
-    }
-    poses.push_back(pose);
-  }
-
   const Task& task_;
-  Metric metric_;
   std::vector<Primitive> primitives_;
   const Belief& start_;
   BeliefSummary seed_;
   SuccessorEngine& succ_;
-  std::vector<Candidate> found_;
+  std::vector<Guide> found_;
 };
 
 }  // namespace
 
-std::vector<Attractor> find_attractors(const Task& task, const Belief& start, SuccessorEngine& succ,
-                                       Rollout& rollout) {
-  AttractorSearch search(task, start, succ);
-  search.push_from(start, 2);
+std::vector<Guide> find_guides(const Task& task, const Belief& start, SuccessorEngine& succ,
+                               Rollout& rollout) {
+  GuideSearch search(task, start, succ);
+  search.push_from(start, {});
   const Belief about_goal = search.spread_about_goal(rollout);
-  if (!about_goal.particles.empty()) search.push_from(about_goal, 1);
+  if (!about_goal.particles.empty()) search.push_from(about_goal, {});
 
-  std::vector<Attractor> attractors;
-  for (const Candidate& candidate : search.take()) {
-    attractors.push_back({candidate.end.mean, task.goal});
+  std::vector<Guide> guides = search.take();
+  if (guides.empty()) return guides;
+  if (const std::optional<Pose> mouth = search.mouth()) {
+    Guide through = guides.front();
+    through.goals.insert(through.goals.begin(), *mouth);
+    guides.push_back(std::move(through));
   }
-  if (attractors.empty()) return attractors;
-  const Pose nearest = attractors.front().contact;
-  for (const Pose& mouth : search.mouths()) attractors.push_back({nearest, mouth});
-  return attractors;
+  return guides;
 }
 
 }  // namespace tenon::planner

@@ -1,5 +1,6 @@
 #pragma once
-// Where uncertainty shrinks: beliefs after long pushes, found with a few dozen rollouts.
+// Where uncertainty shrinks: beliefs after long pushes, found with a few dozen rollouts, and the
+// guides that lead from one to the next.
 
 #include <vector>
 
@@ -9,15 +10,14 @@
 
 namespace tenon::planner {
 
-/// Forward: long primitives, and pairs of them, from the start; an end is an attractor where its
-/// uncertainty is below c_u times that of the start. Backward: long primitives from the goal with
-/// the start's spread give contact attractors by the same rule; from the goal as a point, a move
-/// that ends by losing a contact gives a goal attractor, such as the mouth of a hole.
-/// Near-duplicates are dropped; the eight that are the least detour from start to goal stay, in a
-/// fixed order.
+/// Long pushes along one search axis after the other, from the start and with the start's spread
+/// about the goal. A push is a contact attractor where the particles then stand within c_u times
+/// their spread before it. Guides are the cheapest sequences of contacts that leave no more than
+/// the goal's uncertainty (or the most certain ones, where none does), and, with the cheapest of
+/// them, the mouth of a hole: where a tool drawn out of the goal along a contact loses it.
 /// @param succ with moves at approach speed and time for long ones
 /// @param rollout asked for collisions only
-[[nodiscard]] std::vector<Attractor> find_attractors(const Task& task, const Belief& start,
-                                                     SuccessorEngine& succ, Rollout& rollout);
+[[nodiscard]] std::vector<Guide> find_guides(const Task& task, const Belief& start,
+                                             SuccessorEngine& succ, Rollout& rollout);
 
 }  // namespace tenon::planner

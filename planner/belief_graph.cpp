@@ -4,9 +4,9 @@
 
 namespace tenon::planner {
 
-BeliefGraph::BeliefGraph(const Task& task, const Belief& start, std::vector<Attractor> attractors,
+BeliefGraph::BeliefGraph(const Task& task, const Belief& start, std::vector<Guide> guides,
                          SuccessorEngine& succ)
-    : task_(task), attractors_(std::move(attractors)), succ_(succ), steps_(step_primitives(task)) {
+    : task_(task), guides_(std::move(guides)), succ_(succ), steps_(step_primitives(task)) {
   number(start);
 }
 
@@ -14,7 +14,7 @@ bool BeliefGraph::is_goal(StateId state) const { return at_goal(summaries_[state
 
 double BeliefGraph::heuristic(std::size_t v, StateId state) const {
   if (v == 0) return anchor_heuristic(summaries_[state], task_);
-  return foliated_heuristic(summaries_[state], attractors_[v - 1], task_);
+  return foliated_heuristic(summaries_[state], guides_[v - 1], task_);
 }
 
 std::vector<Primitive> BeliefGraph::primitives(StateId state) const {

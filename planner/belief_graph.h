@@ -17,13 +17,13 @@ namespace tenon::planner {
 class BeliefGraph final : public SearchGraph {
  public:
   /// task and succ must outlive this.
-  BeliefGraph(const Task& task, const Belief& start, std::vector<Attractor> attractors,
+  BeliefGraph(const Task& task, const Belief& start, std::vector<Guide> guides,
               SuccessorEngine& succ);
 
   [[nodiscard]] StateId start() const override { return 0; }
   [[nodiscard]] bool is_goal(StateId state) const override;
   [[nodiscard]] std::vector<Edge> successors(StateId state) override;
-  [[nodiscard]] std::size_t inadmissible_count() const override { return attractors_.size(); }
+  [[nodiscard]] std::size_t inadmissible_count() const override { return guides_.size(); }
   [[nodiscard]] double heuristic(std::size_t v, StateId state) const override;
 
   /// The edge does not exist: certification contradicted it.
@@ -41,7 +41,7 @@ class BeliefGraph final : public SearchGraph {
   StateId number(const Belief& belief);
 
   const Task& task_;
-  std::vector<Attractor> attractors_;
+  std::vector<Guide> guides_;
   SuccessorEngine& succ_;
   std::vector<Primitive> steps_;
   std::vector<Belief> beliefs_;

@@ -19,9 +19,8 @@ Belief ends(const std::vector<Chain>& chains) {
   return belief;
 }
 
-/// Every move of both against each other. @return empty where they agree
-std::string difference(const GuardedMove::Result& move, const GuardedMove::Result& reference,
-                       bool compare_pose) {
+/// One move against its reference. @return empty where they agree
+std::string difference(const GuardedMove::Result& move, const GuardedMove::Result& reference) {
   if (move.outcome != reference.outcome) {
     return std::string("outcome ") + to_string(move.outcome) + ", as planned " +
            to_string(reference.outcome);
@@ -31,8 +30,7 @@ std::string difference(const GuardedMove::Result& move, const GuardedMove::Resul
            to_string(reference.signature);
   }
   const Vector6 off = displacement_between(reference.pose, move.pose);
-  if (compare_pose &&
-      (off.head<3>().norm() > kPoseAgreement_m || off.tail<3>().norm() > kPoseAgreement_rad)) {
+  if (off.head<3>().norm() > kPoseAgreement_m || off.tail<3>().norm() > kPoseAgreement_rad) {
     return format("pose differs by %.3f mm", 1e3 * off.head<3>().norm());
   }
   return {};
@@ -45,13 +43,13 @@ void keep_earliest(VariantRun& run, const Disagreement& found) {
 
 void judge(VariantRun& run, const VariantRun& reference, const Task& task, std::size_t last_step) {
   run.holds = true;
-  const bool compare_pose = run.variant.friction == reference.variant.friction;
+  const bool same_physics = run.variant.friction == reference.variant.friction;
   for (std::size_t p = 0; p < run.chains.size(); ++p) {
     const Chain& chain = run.chains[p];
     const Chain& planned = reference.chains[p];
     const std::size_t common = std::min(chain.moves.size(), planned.moves.size());
-    for (std::size_t i = 0; i < common; ++i) {
-      const std::string why = difference(chain.moves[i], planned.moves[i], compare_pose);
+    for (std::size_t i = 0; same_physics && i < common; ++i) {
+      const std::string why = difference(chain.moves[i], planned.moves[i]);
       if (why.empty()) continue;
       keep_earliest(run, {chain.steps[i], p, why});
       break;

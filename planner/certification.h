@@ -48,9 +48,9 @@ struct Certification {
 };
 
 /// Decodes the bytes and runs the plan's own transitions. A variant holds where every particle's
-/// chain is done at the goal, all of them within its tolerances, and every move has the outcome and
-/// the contacts of the first variant; at half the integration step also the pose, within 0.5 mm or
-/// 0.2 degrees.
+/// chain is done at the goal, all of them within its tolerances. At half the integration step every
+/// move must also end as in the first variant, within 0.5 mm or 0.2 degrees; under another friction
+/// a move may end otherwise, as long as the plan goes on from there to the goal.
 /// @throws InputError where the bytes are no plan, or not one of this task
 [[nodiscard]] Certification certify(std::span<const std::uint8_t> bytes, const Task& task,
                                     RolloutPool& pool);

@@ -1,13 +1,45 @@
 #include "planner/heuristics.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tenon::planner {
+namespace {
+
+/// Steps along one axis; a contact takes at least one.
+double steps_along(const Task& task, int axis, double way) {
+  const double step = axis < 3 ? task.step_m : task.step_rad;
+  constexpr double kRounding = 1e-6;
+  return std::max(1.0, std::ceil(way / step - kRounding));
+}
+
+double cost_of_contacts(const BeliefSummary& belief, const Guide& guide, const Task& task, Pose& at,
+                        double& uncertainty_m2) {
+  const double together = std::sqrt(task.goal_uncertainty_m2);
+  double cost = 0.0;
+  for (const ContactAttractor& contact : guide.contacts) {
+    const int axis = contact.axis;
+    if (belief.spread[axis] <= contact.spread + together) continue;
+    Vector6 along = Vector6::Zero();
+    along[axis] = displacement_between(at, contact.mean)[axis];
+    const Pose touching = displaced(at, along);
+    const double steps = steps_along(task, axis, std::abs(along[axis]) + belief.spread[axis]);
+    cost += task.distance_weight_per_m * distance(at, touching, metric_of(task)) +
+            task.uncertainty_weight_per_m2 * uncertainty_m2 * steps;
+    at = touching;
+    uncertainty_m2 = std::min(uncertainty_m2, contact.uncertainty_m2);
+  }
+  return cost;
+}
+
+}  // namespace
 
 BeliefSummary summarise(const Belief& belief, const Task& task) {
   const Metric metric = metric_of(task);
-  BeliefSummary summary{mean_pose(belief), uncertainty(belief, metric), 0.0};
+  BeliefSummary summary{mean_pose(belief), uncertainty(belief, metric), 0.0, Vector6::Zero()};
   for (const Particle& particle : belief.particles) {
+    const Vector6 off = displacement_between(summary.mean, particle.pose);
+    summary.spread = summary.spread.cwiseMax(off.cwiseAbs());
     summary.farthest_m = std::max(summary.farthest_m, distance(particle.pose, task.goal, metric));
   }
   return summary;
@@ -31,12 +63,17 @@ double anchor_heuristic(const BeliefSummary& belief, const Task& task) {
          task.uncertainty_weight_per_m2 * belief.uncertainty_m2;
 }
 
-double foliated_heuristic(const BeliefSummary& belief, const Attractor& attractor,
-                          const Task& task) {
-  const bool uncertain = belief.uncertainty_m2 > task.goal_uncertainty_m2;
-  const Pose& towards = uncertain ? attractor.contact : attractor.goal;
-  return task.distance_weight_per_m * distance(belief.mean, towards, metric_of(task)) +
-         task.uncertainty_weight_per_m2 * belief.uncertainty_m2;
+double foliated_heuristic(const BeliefSummary& belief, const Guide& guide, const Task& task) {
+  Pose at = belief.mean;
+  double uncertainty_m2 = belief.uncertainty_m2;
+  double cost = guide.contact_scale * cost_of_contacts(belief, guide, task, at, uncertainty_m2);
+  for (const Pose& next : guide.goals) {
+    const double way_m = displacement_between(at, next).head<3>().lpNorm<1>();
+    cost += task.distance_weight_per_m * distance(at, next, metric_of(task)) +
+            task.uncertainty_weight_per_m2 * uncertainty_m2 * std::max(1.0, way_m / task.step_m);
+    at = next;
+  }
+  return cost;
 }
 
 }  // namespace tenon::planner

@@ -12,15 +12,29 @@ namespace tenon::planner {
 struct BeliefSummary {
   Pose mean;
   double uncertainty_m2 = 0.0;
-  double farthest_m = 0.0;  ///< distance to the goal of the particle farthest from it
+  double farthest_m = 0.0;           ///< distance to the goal of the particle farthest from it
+  Vector6 spread = Vector6::Zero();  ///< by axis, of the particle farthest from the mean, m or rad
 };
 
 [[nodiscard]] BeliefSummary summarise(const Belief& belief, const Task& task);
 
-/// Where a guide leads: to `contact` while the uncertainty is above the goal's, then to `goal`.
-struct Attractor {
-  Pose contact;
-  Pose goal;
+/// A push along one axis after which the particles stand together along it: contact with a face. A
+/// face may be met anywhere, so only the coordinate along the axis leads there.
+struct ContactAttractor {
+  int axis = 0;
+  Pose mean;            ///< of the belief after the push
+  double spread = 0.0;  ///< along the axis after the push, m or rad
+  double uncertainty_m2 = 0.0;
+};
+
+/// Where an inadmissible heuristic leads: to contacts in turn, then past goal attractors, of which
+/// the last is the goal.
+struct Guide {
+  std::vector<ContactAttractor> contacts;
+  std::vector<Pose> goals;
+  /// What the contacts cost is several times what the anchor knows of, and a guide leads only while
+  /// it is within w2 of the anchor: so that part of it is scaled down to begin there.
+  double contact_scale = 1.0;
 };
 
 /// c(s, s') = w_d d(s, s') + w_u u(s).
@@ -34,8 +48,10 @@ struct Attractor {
 /// against the edge's own, and the rest is a distance to a ball that holds every goal.
 [[nodiscard]] double anchor_heuristic(const BeliefSummary& belief, const Task& task);
 
-/// w_d d(s, attractor) + w_u u(s). Inadmissible.
-[[nodiscard]] double foliated_heuristic(const BeliefSummary& belief, const Attractor& attractor,
+/// What is left to pay by single steps along the guide: w_d for the way, and w_u u for every step
+/// at the uncertainty that the last contact left. A contact is behind a belief whose particles
+/// stand together along its axis. Inadmissible.
+[[nodiscard]] double foliated_heuristic(const BeliefSummary& belief, const Guide& guide,
                                         const Task& task);
 
 }  // namespace tenon::planner

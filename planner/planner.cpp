@@ -82,11 +82,11 @@ class Planning {
       return finish(PlanStatus::kAlreadyAtGoal,
                     "start '" + start_.name + "' is already within the goal's tolerances");
     }
-    std::vector<Attractor> attractors = timed(now_s_, report_.times.attractors_s, [&] {
-      return find_attractors(task_, belief, long_succ_, pool_.front());
+    std::vector<Guide> guides = timed(now_s_, report_.times.attractors_s, [&] {
+      return find_guides(task_, belief, long_succ_, pool_.front());
     });
-    report_.attractors = attractors.size();
-    BeliefGraph graph(task_, belief, std::move(attractors), succ_);
+    report_.attractors = guides.size();
+    BeliefGraph graph(task_, belief, std::move(guides), succ_);
     for (std::size_t round = 0; round < options_.rounds_max; ++round) {
       if (!search(graph)) return report_with_counters(graph);
       if (try_path(graph)) return report_with_counters(graph);

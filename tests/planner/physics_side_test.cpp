@@ -119,34 +119,72 @@ TEST_F(Room, ARefusedEdgeIsGone) {
   for (const Edge& edge : after) EXPECT_NE(edge.label, before.front().label);
 }
 
-TEST_F(Room, AttractorsAreTheWallsAndCornersAndEachStandsOnce) {
-  const auto attractors = find_attractors(task, start, succ, pool.front());
-  ASSERT_FALSE(attractors.empty());
-  ASSERT_LE(attractors.size(), 8U);
-  for (std::size_t i = 0; i < attractors.size(); ++i) {
-    const Vector3& p = attractors[i].contact.position_m;
-    EXPECT_TRUE(std::abs(std::abs(p.x()) - 0.5) < 1e-9 || std::abs(std::abs(p.y()) - 0.4) < 1e-9);
-    for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_GT((attractors[j].contact.position_m - p).norm(), 0.5 * task.step_m - 1e-12);
+TEST_F(Room, GuidesLeadToOneWallAfterTheOtherAndNoneStandsTwice) {
+  const std::vector<Guide> guides = find_guides(task, start, succ, pool.front());
+  ASSERT_EQ(guides.size(), 2U);
+  for (const Guide& guide : guides) {
+    ASSERT_EQ(guide.contacts.size(), 2U);
+    EXPECT_NE(guide.contacts[0].axis, guide.contacts[1].axis);
+    for (const ContactAttractor& contact : guide.contacts) {
+      const double wall_m = contact.axis == 0 ? 0.5 : 0.4;
+      EXPECT_NEAR(std::abs(contact.mean.position_m[contact.axis]), wall_m, 1e-9);
+      EXPECT_NEAR(contact.spread, 0.0, 1e-9);
     }
+    EXPECT_NEAR(guide.contacts[0].uncertainty_m2, 0.0018, 1e-9);
+    EXPECT_NEAR(guide.contacts[1].uncertainty_m2, 0.0, 1e-9);
+    EXPECT_EQ(guide.goals.back().position_m, task.goal.position_m);
+  }
+  const auto walls = [](const Guide& guide) {
+    return std::pair(guide.contacts[0].mean.position_m[guide.contacts[0].axis],
+                     guide.contacts[1].mean.position_m[guide.contacts[1].axis]);
+  };
+  EXPECT_NE(walls(guides[0]), walls(guides[1]));
+}
+
+TEST_F(Room, AGuideBeginsWithinReachOfTheAnchor) {
+  // Beyond w2 times the anchor's key a guide is never asked.
+  const BeliefSummary seed = summarise(start, task);
+  for (const Guide& guide : find_guides(task, start, succ, pool.front())) {
+    EXPECT_LE(foliated_heuristic(seed, guide, task), task.w2 * anchor_heuristic(seed, task));
+    EXPECT_GT(foliated_heuristic(seed, guide, task), anchor_heuristic(seed, task));
   }
 }
 
 TEST_F(Room, WithoutWallsThereIsNoAttractor) {
   RolloutPool empty(WallRollout(WallRollout::World{}), 1);
   SuccessorEngine engine(empty, MoveParameters{}, 2000);
-  EXPECT_TRUE(find_attractors(task, start, engine, empty.front()).empty());
+  EXPECT_TRUE(find_guides(task, start, engine, empty.front()).empty());
 }
 
-TEST_F(Room, TheFoliatedHeuristicLeadsToTheContactWhileUncertainAndThenToTheGoal) {
-  const Attractor attractor{Pose{{0.5, 0.0, 0.0}, Eigen::Quaterniond::Identity()}, task.goal};
-  const BeliefSummary uncertain = summarise(start, task);
-  EXPECT_NEAR(foliated_heuristic(uncertain, attractor, task),
-              5e3 * std::hypot(0.5 + 0.23, 0.11) + 2.5e6 * 0.0036, 1e-6);
-  BeliefSummary certain = uncertain;
+TEST_F(Room, TheFoliatedHeuristicCountsTheContactsThatAreLeftAndThenTheWayToTheGoal) {
+  // x +0.5 at 0.0036 m2 of uncertainty, then y -0.4 at half of it, then the goal.
+  ContactAttractor first;
+  first.axis = 0;
+  first.mean.position_m = {0.5, 7.0, 0.0};
+  first.uncertainty_m2 = 0.0018;
+  ContactAttractor second;
+  second.axis = 1;
+  second.mean.position_m = {7.0, -0.4, 0.0};
+  const Guide guide{{first, second}, {task.goal}, 0.5};
+
+  // The farthest particles stand 0.06 m out: 0.79 m are eight steps, 0.35 m are four.
+  BeliefSummary belief = summarise(start, task);
+  const double contacts = 5e3 * 0.73 + 2.5e6 * 0.0036 * 8 + 5e3 * 0.29 + 2.5e6 * 0.0018 * 4;
+  const double home = 5e3 * std::hypot(0.33, 0.52);
+  EXPECT_NEAR(foliated_heuristic(belief, guide, task), 0.5 * contacts + home, 1e-6);
+
+  // Whoever stands together along x has that contact behind it.
+  belief.spread[0] = 0.0;
+  belief.uncertainty_m2 = 0.0018;
+  belief.mean.position_m.x() = 0.5;
+  const double one_contact = 5e3 * 0.29 + 2.5e6 * 0.0018 * 4;
+  EXPECT_NEAR(foliated_heuristic(belief, guide, task), 0.5 * one_contact + home, 1e-6);
+
+  BeliefSummary certain = summarise(start, task);
+  certain.spread.setZero();
   certain.uncertainty_m2 = task.goal_uncertainty_m2;
-  EXPECT_NEAR(foliated_heuristic(certain, attractor, task),
-              5e3 * std::hypot(0.40, 0.23) + 2.5e6 * 2e-6, 1e-6);
+  EXPECT_NEAR(foliated_heuristic(certain, guide, task),
+              5e3 * std::hypot(0.40, 0.23) + 2.5e6 * 2e-6 * 6.3, 1e-6);
 }
 
 }  // namespace
