@@ -1,14 +1,14 @@
 #!/bin/bash
-# Checks everything: installs what is missing, then format, lint, build and tests, and the tests again
-# under sanitizers. Exit status 0 if all of it passed.
+# Checks everything: installs what is missing, then format, lint, build and tests, the tests that need a
+# kernel with CAN, and the tests again under sanitizers. Exit status 0 if all of it passed.
 #
 #   ./test.sh                  everything
-#   ./test.sh STAGE...         only these stages, of: format lint unit asan
+#   ./test.sh STAGE...         only these stages, of: format lint unit guest asan
 #                              and on demand: tsan fuzz
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")" || exit 1
 
-all_stages=(format lint unit asan)
+all_stages=(format lint unit guest asan)
 jobs=$(nproc)
 
 # --- helpers ----------------------------------------------------------------------------------------
@@ -73,6 +73,11 @@ stage_lint() {
 stage_unit() {
   build dev
   ctest --preset dev --parallel "$jobs"
+}
+
+stage_guest() {
+  build dev
+  tests/guest/run.sh build/dev/bin
 }
 
 stage_asan() {

@@ -3,7 +3,8 @@
 #   tenon_library(NAME [EXCEPT FOLDER...] [PUBLIC DEP...] [PRIVATE DEP...])
 #   tenon_main(NAME SOURCE [DEP...])
 #   tenon_lcm_types(NAME)
-#   tenon_test(AREA [SERIAL])      and tenon_test_program(NAME [DEP...]) for benchmarks and fuzzers
+#   tenon_test(AREA [SERIAL|UNLISTED])
+#   tenon_test_program(NAME [DEP...])     for benchmarks and fuzzers
 #   tenon_check_house()
 #
 # A dependency that is not in the table below stops the configure step, whether it is declared with
@@ -15,7 +16,8 @@
 set(TENON_LIBRARIES shared shared_config lcmtypes planner executor hw sim)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
-set(TENON_MAY_USE_shared_config shared yaml-cpp urdfdom::urdfdom nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_shared_config shared yaml-cpp urdfdom::urdfdom_model
+                                console_bridge::console_bridge nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
 set(TENON_MAY_USE_planner       shared Threads::Threads nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_executor      shared lcmtypes LCM::lcm Threads::Threads
@@ -37,7 +39,7 @@ set(TENON_MAY_USE_tenon-can      hw shared_config)
 # Everything under tests/ may use any library, and never a main.
 set(TENON_MAY_USE_tests ${TENON_LIBRARIES} test_support Eigen3::Eigen yaml-cpp ODE::ODE LCM::lcm
     Threads::Threads nlohmann_json::nlohmann_json GTest::gtest GTest::gmock GTest::gtest_main
-    GTest::gmock_main benchmark::benchmark benchmark::benchmark_main)
+    GTest::gmock_main orocos-kdl benchmark::benchmark benchmark::benchmark_main)
 
 # Stops unless the row of the table allows `target` to use each of the given dependencies.
 function(tenon_check_dependencies target)
@@ -185,8 +187,9 @@ endfunction()
 # The GoogleTest binary tests_AREA out of every .cpp below the folder AREA; each test is registered as
 # AREA.Suite.Name under the label AREA.
 # SERIAL: its tests run one at a time, because they run in real time.
+# UNLISTED: built but not registered, because its tests need another machine (tests/guest).
 function(tenon_test area)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL" "" "")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL;UNLISTED" "" "")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${area}/*.cpp)
   if(NOT sources)
     return()
@@ -194,6 +197,9 @@ function(tenon_test area)
   add_executable(tests_${area} ${sources})
   tenon_test_program(tests_${area} test_support ODE::ODE LCM::lcm yaml-cpp Threads::Threads
     nlohmann_json::nlohmann_json GTest::gtest_main GTest::gmock)
+  if(arg_UNLISTED)
+    return()
+  endif()
   gtest_discover_tests(tests_${area}
     TEST_PREFIX "${area}."
     DISCOVERY_MODE PRE_TEST

@@ -3,72 +3,59 @@
 #include <algorithm>
 #include <cmath>
 
+#include "executor/joint_difference.h"
 #include "shared/base/error.h"
 
 namespace tenon::executor {
 namespace {
 
 constexpr double kNanosecond_s = 1e-9;
-// Bounds for a sensor whose data sheet is silent about its noise.
-constexpr double kForceDeviation_N = 0.05;
-constexpr double kTorqueDeviation_Nm = 0.005;
-// A resting sensor may be this many times as noisy as its data sheet says.
-constexpr double kNoiseFactor = 3.0;
 // Samples above the on-threshold that make a contact during the approach.
 constexpr int kTouchSamples = 2;
 // Drives are at rest when no joint has moved further than this for so many cycles.
 constexpr double kRestMotion = 2e-5;
 constexpr int kRestCycles = 20;
-// Rounding of the commanded position is no excess of speed.
-constexpr double kSpeedTolerance = 1.0 + 1e-6;
 
 const Plan& with_steps(const Plan& plan) {
   if (plan.steps.empty()) throw InputError("plan '" + plan.task_name + "' has no steps");
   return plan;
 }
 
-SensorTare::Parameters tare_parameters(const ForceTorqueSensor& sensor, int samples) {
-  SensorTare::Parameters parameters;
-  parameters.samples = samples;
-  parameters.force_deviation_max_N =
-      std::max({kForceDeviation_N, kNoiseFactor * sensor.force_noise_N, sensor.force_per_count_N});
-  parameters.torque_deviation_max_Nm = std::max(
-      {kTorqueDeviation_Nm, kNoiseFactor * sensor.torque_noise_Nm, sensor.torque_per_count_Nm});
-  return parameters;
-}
-
 }  // namespace
 
-Controller::Controller(const Cell& cell, const Plan& plan, const Parameters& parameters)
+Controller::Controller(const Cell& cell, const DryRun& dry_run, const Parameters& parameters)
     : cell_(cell),
-      plan_(with_steps(plan)),
+      plan_(with_steps(dry_run.plan)),
+      start_(dry_run.start),
       parameters_(parameters),
       cycle_s_(1e-6 * cell.robot.cycle_us),
       cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us),
       kinematics_(cell_),
-      wrench_(cell_),
+      supervision_(cell_, kinematics_, parameters.supervision),
       admittance_(plan_.compliance, cycle_s_),
       runner_(plan_),
-      sensor_tare_(tare_parameters(cell.robot.sensor, parameters.tare_samples)) {}
+      sensor_tare_(SensorTare::parameters_for(cell.robot.sensor, parameters.tare_samples)),
+      joints_(cell_.robot, kinematics_) {}
 
 Controller::Command Controller::cycle(std::int64_t now_ns, const ArmFeedback& feedback) noexcept {
   motion_ns_ += cycle_ns_;
   record_.moving = false;
   record_.move_started = false;
-  take_joints(feedback);
-  take_wrench(feedback);
-  watch_arm(feedback);
-  watch_force(feedback);
+  if (const auto ending = supervision_.update(feedback, following())) end(*ending);
   if (stop_requested_) end({.reason = EndReason::kStopRequested});
   act(feedback);
   move_tool();
-  const Command command{request(), joints_};
+  const Command command{request(), joints_.position()};
   write_record(now_ns, feedback, command);
   return command;
 }
 
 void Controller::report_overruns(std::uint64_t late_cycles) noexcept {
   end({.reason = EndReason::kOverruns, .value = static_cast<double>(late_cycles)});
+}
+
+void Controller::report_poor_feedback(std::uint64_t incomplete_cycles) noexcept {
+  end({.reason = EndReason::kFeedbackPoor, .value = static_cast<double>(incomplete_cycles)});
 }
 
 // --- states ---------------------------------------------------------------------------------
@@ -83,20 +70,21 @@ void Controller::enter_state(State state) {
   state_since_ns_ = motion_ns_;
   switch (state) {
     case State::kTaring:
-      joints_ = measured_;
-      commanded_ = tool_;
-      tare_low_ = measured_;
-      tare_high_ = measured_;
+      joints_.rest_at(supervision_.joints());
+      commanded_ = supervision_.tool();
+      tare_low_ = tare_high_ = supervision_.joints();
       return;
     case State::kApproaching:
+      return start_approach();
+    case State::kRunning:
       setpoint_ = {commanded_, Vector6::Zero(), Vector6::Zero()};
       admittance_.reset(commanded_);
-      return start_approach();
+      return;
     case State::kStopping:
       stop_ = StopProfile(setpoint_, parameters_of_step().speeds);
       return;
     case State::kQuickStopping:
-      rest_at_ = measured_;
+      rest_at_ = supervision_.joints();
       rest_cycles_ = 0;
       return;
     case State::kHolding:
@@ -104,7 +92,6 @@ void Controller::enter_state(State state) {
       setpoint_.acceleration.setZero();
       return;
     case State::kWaiting:
-    case State::kRunning:
     case State::kDisabling:
     case State::kFinished:
       return;
@@ -112,14 +99,21 @@ void Controller::enter_state(State state) {
 }
 
 void Controller::end(const Ending& ending) {
-  const bool fault = wants_quick_stop(ending.reason);
+  const EndManner manner = end_manner(ending.reason);
+  const bool fault = manner == EndManner::kQuickStop;
   const bool first = ending_.reason == EndReason::kNone;
-  const bool worse = fault && !wants_quick_stop(ending_.reason) && state_ < State::kDisabling;
+  const bool worse =
+      fault && end_manner(ending_.reason) != EndManner::kQuickStop && state_ < State::kDisabling;
   if (first || worse) ending_ = ending;
+  if (manner == EndManner::kJointRamp || state_ == State::kApproaching) leave_the_tool();
   if (ending.reason == EndReason::kPlanDone || ending.reason == EndReason::kPlanFailed) {
     return process_event(Event::kPlanEnded);
   }
   process_event(fault ? Event::kFault : Event::kStop);
+}
+
+bool Controller::following() const {
+  return state_ > State::kWaiting && state_ < State::kDisabling && state_ != State::kQuickStopping;
 }
 
 double Controller::time_in_state_s() const {
@@ -144,87 +138,14 @@ ArmRequest Controller::request() const {
   return ArmRequest::kDisabled;
 }
 
-// --- taking in ------------------------------------------------------------------------------
-
-void Controller::take_joints(const ArmFeedback& feedback) {
-  bool all = true;
-  for (std::size_t i = 0; i < kinematics_.chain().joint_count(); ++i) {
-    const bool fresh =
-        (feedback.joints_fresh >> i & 1U) != 0 && std::isfinite(feedback.position[i]);
-    all = all && fresh;
-    misses_[i] = fresh ? 0 : misses_[i] + 1;
-    if (fresh) measured_[i] = feedback.position[i];
-  }
-  known_ = known_ || all;
-  if (known_) tool_ = kinematics_.tool(measured_);
-}
-
-void Controller::take_wrench(const ArmFeedback& feedback) {
-  wrench_age_ns_ = feedback.wrench_fresh ? 0 : wrench_age_ns_ + cycle_ns_;
-  wrench_usable_ = feedback.wrench_fresh && blind_cycles_ == 0;
-  if (blind_cycles_ > 0) --blind_cycles_;
-  if (!feedback.wrench_fresh || !known_) return;
-  switch (wrench_.update(feedback.wrench, tool_)) {
-    case WrenchEstimator::Status::kGood:
-      return;
-    case WrenchEstimator::Status::kSaturated: {
-      const int axis = wrench_.axis();
-      const ForceTorqueSensor& sensor = cell_.robot.sensor;
-      return end({.reason = EndReason::kSensorSaturated,
-                  .index = axis,
-                  .value = feedback.wrench[axis],
-                  .bound = axis < 3 ? sensor.force_range_N : sensor.torque_range_Nm});
-    }
-    case WrenchEstimator::Status::kNotFinite:
-      return end({.reason = EndReason::kSensorNotFinite});
-  }
-}
-
-void Controller::watch_arm(const ArmFeedback& feedback) {
-  if (feedback.state == ArmState::kFault) {
-    return end({.reason = EndReason::kArmFault, .arm_fault = feedback.fault});
-  }
-  const bool following =
-      state_ > State::kWaiting && state_ < State::kDisabling && state_ != State::kQuickStopping;
-  if (!following) return;
-  if (feedback.state != ArmState::kEnabled) {
-    return end({.reason = EndReason::kArmNotEnabled, .index = static_cast<int>(feedback.state)});
-  }
-  for (std::size_t i = 0; i < kinematics_.chain().joint_count(); ++i) {
-    if (misses_[i] <= parameters_.feedback_misses_max) continue;
-    return end({.reason = EndReason::kFeedbackMissing,
-                .index = static_cast<int>(i),
-                .value = static_cast<double>(misses_[i]),
-                .bound = static_cast<double>(parameters_.feedback_misses_max)});
-  }
-  const double age_s = kNanosecond_s * static_cast<double>(wrench_age_ns_);
-  if (age_s > parameters_.wrench_age_max_s) {
-    end({.reason = EndReason::kWrenchMissing,
-         .value = age_s,
-         .bound = parameters_.wrench_age_max_s});
-  }
-}
-
-void Controller::watch_force(const ArmFeedback& feedback) {
-  if (!tared_ || !feedback.wrench_fresh) return;
-  const double force_N = wrench_.external().head<3>().norm();
-  const double torque_Nm = wrench_.external().tail<3>().norm();
-  peak_force_N_ = std::max(peak_force_N_, force_N);
-  peak_torque_Nm_ = std::max(peak_torque_Nm_, torque_Nm);
-  if (force_N > cell_.force_fault_N) {
-    return end({.reason = EndReason::kForceFault, .value = force_N, .bound = cell_.force_fault_N});
-  }
-  if (torque_Nm > cell_.torque_fault_Nm) {
-    end({.reason = EndReason::kTorqueFault, .value = torque_Nm, .bound = cell_.torque_fault_Nm});
-  }
-}
-
 // --- what a state does ----------------------------------------------------------------------
 
 void Controller::act(const ArmFeedback& feedback) {
   switch (state_) {
     case State::kWaiting:
-      if (feedback.state == ArmState::kEnabled && known_) return process_event(Event::kEnabled);
+      if (feedback.state == ArmState::kEnabled && supervision_.known()) {
+        return process_event(Event::kEnabled);
+      }
       if (time_in_state_s() < parameters_.enable_timeout_s) return;
       return end({.reason = EndReason::kEnableTimeout, .value = time_in_state_s()});
     case State::kTaring:
@@ -240,18 +161,8 @@ void Controller::act(const ArmFeedback& feedback) {
     case State::kHolding:
       if (time_in_state_s() >= parameters_.hold_s) process_event(Event::kHeld);
       return;
-    case State::kDisabling: {
-      const bool off =
-          feedback.state == ArmState::kDisabled || feedback.state == ArmState::kUnconfigured;
-      const bool given_up =
-          time_in_state_s() >= (feedback.state == ArmState::kFault ? parameters_.quick_stop_s
-                                                                   : parameters_.disable_timeout_s);
-      if (off || given_up) {
-        ending_.disable_confirmed = off;
-        process_event(Event::kDisabled);
-      }
-      return;
-    }
+    case State::kDisabling:
+      return wait_for_disabled(feedback);
     case State::kFinished:
       return;
   }
@@ -259,8 +170,8 @@ void Controller::act(const ArmFeedback& feedback) {
 
 void Controller::tare(const ArmFeedback& feedback) {
   for (std::size_t i = 0; i < kinematics_.chain().joint_count(); ++i) {
-    tare_low_[i] = std::min(tare_low_[i], measured_[i]);
-    tare_high_[i] = std::max(tare_high_[i], measured_[i]);
+    tare_low_[i] = std::min(tare_low_[i], supervision_.joints()[i]);
+    tare_high_[i] = std::max(tare_high_[i], supervision_.joints()[i]);
     const double moved = tare_high_[i] - tare_low_[i];
     if (moved <= parameters_.tare_motion_max) continue;
     return end({.reason = EndReason::kTareMoving,
@@ -273,8 +184,7 @@ void Controller::tare(const ArmFeedback& feedback) {
     case SensorTare::Status::kGathering:
       return;
     case SensorTare::Status::kDone:
-      wrench_.tare(sensor_tare_.mean(), tool_);
-      tared_ = true;
+      supervision_.tare(sensor_tare_.mean());
       return process_event(Event::kTared);
     case SensorTare::Status::kUnsteady: {
       const int axis = sensor_tare_.worst_axis();
@@ -286,52 +196,55 @@ void Controller::tare(const ArmFeedback& feedback) {
   }
 }
 
+// What keeps the plan from starting here: an axis of the tool, or a joint of an arm that holds the
+// same tool pose in another way than the dry run did.
+std::optional<Ending> Controller::off_start() const {
+  const Vector6 off = displacement_between(plan_.start, commanded_);
+  for (const int first : {0, 3}) {
+    const double bound =
+        first == 0 ? parameters_.start_tolerance_m : parameters_.start_tolerance_rad;
+    const Vector3 part = off.segment<3>(first);
+    if (part.norm() <= bound) continue;
+    int worst = 0;
+    part.cwiseAbs().maxCoeff(&worst);
+    const double wanted = first == 0 ? plan_.start.position_m[worst]
+                                     : rotation_vector(plan_.start.orientation)[worst];
+    return Ending{.reason = EndReason::kNotAtStart,
+                  .index = first + worst,
+                  .value = wanted + part[worst],
+                  .bound = bound,
+                  .wanted = wanted};
+  }
+  if (!start_) return std::nullopt;
+  const JointDifference worst = largest_difference(joints_.position(), *start_);
+  if (worst.value <= parameters_.start_tolerance_joint) return std::nullopt;
+  const auto joint = static_cast<std::size_t>(worst.joint);
+  return Ending{.reason = EndReason::kOtherBranch,
+                .index = worst.joint,
+                .value = joints_.position()[joint],
+                .bound = parameters_.start_tolerance_joint,
+                .wanted = (*start_)[joint]};
+}
+
 void Controller::start_approach() {
-  const Vector6 way = displacement_between(commanded_, plan_.start);
-  const double distance_m = way.head<3>().norm();
-  const double angle_rad = way.tail<3>().norm();
-  if (distance_m <= parameters_.start_tolerance_m && angle_rad <= parameters_.start_tolerance_rad) {
-    return process_event(Event::kAtStart);
-  }
-  if (!parameters_.go_to_start) {
-    const bool linear = distance_m > parameters_.start_tolerance_m;
-    return end({.reason = EndReason::kNotAtStart,
-                .index = linear ? 0 : 3,
-                .value = linear ? distance_m : angle_rad,
-                .bound = linear ? parameters_.start_tolerance_m : parameters_.start_tolerance_rad});
-  }
-  // At contact speed all the way: the speed whose impact the plan's check has found harmless.
-  const SpeedLimits& v = parameters_of_step().speeds;
-  const double length = std::max(distance_m, angle_rad * v.contact_mps / v.contact_radps);
-  const double radians_per_path = angle_rad / length;
-  const auto limit = [&](double linear, double angular) {
-    return radians_per_path > 0.0 ? std::min(linear, angular / radians_per_path) : linear;
-  };
-  MotionProfile::Parameters p;
-  p.length = length;
-  p.fast_speed = p.slow_speed = limit(v.contact_mps, v.contact_radps);
-  p.acceleration = limit(v.acceleration_mps2, v.acceleration_radps2);
-  p.jerk = limit(v.jerk_mps3, v.jerk_radps3);
-  approach_ = MotionProfile(p);
-  approach_from_ = commanded_;
-  approach_along_ = way / length;
+  const std::optional<Ending> off = off_start();
+  if (!off) return process_event(Event::kAtStart);
+  if (!parameters_.go_to_start || !start_) return end(*off);
+  // Within contact speed all the way: its impact is what the plan's check has found harmless.
+  approach_ =
+      JointMove(joints_.position(), *start_, cell_.robot, kinematics_, parameters_of_step().speeds);
   touch_samples_ = 0;
 }
 
 void Controller::approach() {
-  const int axis = touching_axis();
-  if (wrench_usable_) touch_samples_ = axis < 0 ? 0 : touch_samples_ + 1;
+  const int axis = touching_axis(SerialChain::kAllAxes);
+  if (supervision_.wrench_usable()) touch_samples_ = axis < 0 ? 0 : touch_samples_ + 1;
   if (touch_samples_ >= kTouchSamples) {
-    const ContactThresholds& on = parameters_of_step().thresholds;
     return end({.reason = EndReason::kContactOnApproach,
                 .index = axis,
-                .value = wrench_.external()[axis],
-                .bound = axis < 3 ? on.force_on_N : on.torque_on_Nm});
+                .value = supervision_.wrench()[axis],
+                .bound = on_threshold(axis)});
   }
-  const MotionProfile::Sample sample = approach_.at(time_in_state_s());
-  setpoint_.pose = displaced(approach_from_, approach_along_ * sample.position);
-  setpoint_.velocity = approach_along_ * sample.velocity;
-  setpoint_.acceleration = approach_along_ * sample.acceleration;
   if (time_in_state_s() >= approach_.duration_s() + parameters_.hold_s) {
     process_event(Event::kAtStart);
   }
@@ -341,8 +254,8 @@ void Controller::run_plan() {
   GuardedMove::Input input;
   input.time_ns = motion_ns_;
   input.pose = pose_for_move();
-  input.wrench = wrench_.external();
-  input.wrench_fresh = wrench_usable_;
+  input.wrench = supervision_.wrench();
+  input.wrench_fresh = supervision_.wrench_usable();
   const GuardedMove::Output output = runner_.update(input);
   setpoint_ = output.setpoint;
   phase_ = output.phase;
@@ -364,29 +277,39 @@ void Controller::run_plan() {
 }
 
 void Controller::ramp_down() {
+  // Into a contact there is no ramping.
+  if (touching_axis(tool_left_ ? SerialChain::kAllAxes : plan_.compliance.compliant_axes) >= 0) {
+    yield_here();
+    return process_event(Event::kAtRest);
+  }
+  if (tool_left_) {
+    if (joints_.at_rest()) process_event(Event::kAtRest);
+    return;
+  }
   // The profile begins with the setpoint of the cycle before.
   const double time_s = time_in_state_s() + cycle_s_;
   setpoint_ = stop_.at(time_s);
-  // Into a contact there is no ramping: the setpoint stays where the tool is.
-  if (touching_axis() >= 0) stop_setpoint_here();
   if (time_s >= stop_.duration_s()) process_event(Event::kAtRest);
 }
 
-void Controller::stop_setpoint_here() {
-  setpoint_ = {admittance_.state().pose, Vector6::Zero(), Vector6::Zero()};
-  stop_ = StopProfile(setpoint_, {});
-}
-
 void Controller::wait_for_rest() {
-  bool moved = false;
-  for (std::size_t i = 0; i < kinematics_.chain().joint_count(); ++i) {
-    moved = moved || std::abs(measured_[i] - rest_at_[i]) > kRestMotion;
-  }
+  const JointVector& joints = supervision_.joints();
+  const bool moved = largest_difference(joints, rest_at_).value > kRestMotion;
   rest_cycles_ = moved ? 0 : rest_cycles_ + 1;
-  if (moved) rest_at_ = measured_;
+  if (moved) rest_at_ = joints;
   if (rest_cycles_ >= kRestCycles || time_in_state_s() >= parameters_.quick_stop_s) {
     process_event(Event::kAtRest);
   }
+}
+
+void Controller::wait_for_disabled(const ArmFeedback& feedback) {
+  const bool off =
+      feedback.state == ArmState::kDisabled || feedback.state == ArmState::kUnconfigured;
+  const double patience_s =
+      feedback.state == ArmState::kFault ? parameters_.quick_stop_s : parameters_.disable_timeout_s;
+  if (!off && time_in_state_s() < patience_s) return;
+  ending_.disable_confirmed = off;
+  process_event(Event::kDisabled);
 }
 
 // --- giving out -----------------------------------------------------------------------------
@@ -395,21 +318,42 @@ void Controller::wait_for_rest() {
 // measured pose taken there, each move would start by a following error off its predecessor's end.
 Pose Controller::pose_for_move() const {
   const Pose& commanded = admittance_.state().pose;
-  Vector6 off = displacement_between(commanded, tool_);
+  Vector6 off = displacement_between(commanded, supervision_.tool());
   for (int axis = 0; axis < 6; ++axis) {
     if (!admittance_.yields(axis)) off[axis] = 0.0;
   }
   return displaced(commanded, off);
 }
 
-// A compliant axis above its on-threshold, or -1.
-int Controller::touching_axis() const {
+double Controller::on_threshold(int axis) const {
   const ContactThresholds& on = parameters_of_step().thresholds;
+  return axis < 3 ? on.force_on_N : on.torque_on_Nm;
+}
+
+// One of the axes that is above its on-threshold, or -1.
+int Controller::touching_axis(std::uint8_t axes) const {
   for (int axis = 0; axis < 6; ++axis) {
-    const double bound = axis < 3 ? on.force_on_N : on.torque_on_Nm;
-    if (admittance_.yields(axis) && std::abs(wrench_.external()[axis]) > bound) return axis;
+    if ((axes >> axis & 1U) == 0) continue;
+    if (std::abs(supervision_.wrench()[axis]) > on_threshold(axis)) return axis;
   }
   return -1;
+}
+
+// The joints ramp down from where they are.
+void Controller::leave_the_tool() {
+  if (tool_left_) return;
+  tool_left_ = true;
+  joints_.stop();
+}
+
+// The setpoint is where the tool is, and the tool compliant.
+void Controller::yield_here() {
+  if (tool_left_) {
+    joints_.rest_at(joints_.position());
+    admittance_.reset(commanded_);
+    tool_left_ = false;
+  }
+  setpoint_ = {admittance_.state().pose, Vector6::Zero(), Vector6::Zero()};
 }
 
 void Controller::move_tool() {
@@ -420,50 +364,36 @@ void Controller::move_tool() {
     case State::kHolding:
       break;
     case State::kWaiting:
-      joints_ = measured_;
-      return;
+      return joints_.rest_at(supervision_.joints());
     case State::kTaring:
     case State::kQuickStopping:
     case State::kDisabling:
     case State::kFinished:
-      wrench_.commanded(Vector6::Zero());
-      return;
+      return supervision_.commanded(Vector6::Zero());
   }
-  if (!tared_) return;  // a refused tare: hold still, the wrench means nothing
-  const Admittance::State& state = admittance_.update(setpoint_, wrench_.external());
-  wrench_.commanded(state.velocity);
-  command_joints(state.pose);
-}
+  if (!supervision_.tared()) return;  // a refused tare: hold still, the wrench means nothing
+  const bool by_joints = tool_left_ || state_ == State::kApproaching;
+  std::optional<Ending> refused;
+  if (!by_joints) {
+    refused = joints_.follow(admittance_.update(setpoint_, supervision_.wrench()).pose);
+  } else if (!tool_left_) {
+    refused = joints_.follow(approach_.at(time_in_state_s()));
+  }
+  if (refused) {
+    if (state_ == State::kRunning) refused->step = static_cast<int>(runner_.step());
+    end(*refused);
+  }
+  if (tool_left_) joints_.ramp();
 
-void Controller::command_joints(const Pose& tool) {
-  const SerialChain::Inverse inverse = kinematics_.joints(tool, joints_);
-  switch (inverse.status) {
-    case SerialChain::InverseStatus::kSolved:
-      break;
-    case SerialChain::InverseStatus::kJointLimit: {
-      const auto i = static_cast<std::size_t>(inverse.joint);
-      const bool low = inverse.position[i] <= cell_.robot.joints[i].lower;
-      const double bound = low ? cell_.robot.joints[i].lower : cell_.robot.joints[i].upper;
-      return end({.reason = EndReason::kJointLimit,
-                  .index = inverse.joint,
-                  .value = bound + (low ? -inverse.error : inverse.error),
-                  .bound = bound});
-    }
-    case SerialChain::InverseStatus::kNotConverged:
-    case SerialChain::InverseStatus::kNotFinite:
-      return end({.reason = EndReason::kUnreachable, .value = inverse.error});
+  if (by_joints || tool_left_) {
+    commanded_ = kinematics_.tool(joints_.position());
+    velocity_ = kinematics_.twist(joints_.position(), joints_.velocity());
+    setpoint_ = {commanded_, Vector6::Zero(), Vector6::Zero()};
+  } else {
+    commanded_ = admittance_.state().pose;
+    velocity_ = admittance_.state().velocity;
   }
-  for (std::size_t i = 0; i < kinematics_.chain().joint_count(); ++i) {
-    const double speed = std::abs(inverse.position[i] - joints_[i]) / cycle_s_;
-    const double most = cell_.robot.joints[i].speed_max;
-    if (speed <= most * kSpeedTolerance) continue;
-    return end({.reason = EndReason::kJointSpeed,
-                .index = static_cast<int>(i),
-                .value = speed,
-                .bound = most});
-  }
-  joints_ = inverse.position;
-  commanded_ = tool;
+  supervision_.commanded(velocity_);
 }
 
 void Controller::write_record(std::int64_t now_ns, const ArmFeedback& feedback,
@@ -476,19 +406,19 @@ void Controller::write_record(std::int64_t now_ns, const ArmFeedback& feedback,
   r.arm_state = feedback.state;
   r.request = command.request;
   r.end_reason = static_cast<std::uint8_t>(ending_.reason);
-  r.wrench_fresh = wrench_usable_;
+  r.wrench_fresh = supervision_.wrench_usable();
   r.phase = phase_;
   r.step = r.moving ? static_cast<std::int32_t>(runner_.step()) : -1;
   r.steps_done = static_cast<std::uint32_t>(runner_.report_count());
   r.signature_before = runner_.signature_before().bits;
   r.signature = runner_.signature().bits;
-  if (!r.moving) r.pose = data_of(tool_);
-  r.wrench = data_of(wrench_.external());
+  if (!r.moving) r.pose = data_of(supervision_.tool());
+  r.wrench = data_of(supervision_.wrench());
   r.setpoint = data_of(setpoint_.pose);
   r.commanded = data_of(commanded_);
-  r.velocity = data_of(admittance_.state().velocity);
+  r.velocity = data_of(velocity_);
   r.wrench_raw = data_of(feedback.wrench);
-  r.position = measured_;
+  r.position = supervision_.joints();
   r.position_commanded = command.position;
   r.joints_fresh = feedback.joints_fresh;
 }

@@ -24,7 +24,8 @@ CycleRunner::CycleRunner(Arm& arm, Controller& controller, CycleSink* sink,
       sink_(sink),
       parameters_(parameters),
       cycle_ns_(std::int64_t{1000} * controller.cell().robot.cycle_us),
-      bucket_(parameters.late),
+      late_(parameters.late),
+      incomplete_(parameters.incomplete),
       black_box_(cycles_in(parameters.black_box_s, controller.cycle_s())) {}
 
 void CycleRunner::begin(std::int64_t now_ns) noexcept {
@@ -34,15 +35,18 @@ void CycleRunner::begin(std::int64_t now_ns) noexcept {
 }
 
 bool CycleRunner::finish(std::int64_t now_ns) noexcept {
-  if (!arm_.receive(now_ns, feedback_)) miss_answers();
+  count_answers(arm_.receive(now_ns, feedback_));
   decide(now_ns);
   publish(0, 0);
   return !controller_.finished();
 }
 
-void CycleRunner::miss_answers() noexcept {
+void CycleRunner::count_answers(bool complete) noexcept {
+  if (complete) return incomplete_.good();
   ++statistics_.incomplete_cycles;
+  incomplete_.late(1);
   controller_.report_late_sync();
+  if (incomplete_.full()) controller_.report_poor_feedback(statistics_.incomplete_cycles);
 }
 
 void CycleRunner::decide(std::int64_t now_ns) noexcept {
@@ -83,7 +87,7 @@ void CycleRunner::run(const std::atomic<bool>& stop) noexcept {
       now_ns = MonotonicClock::now_ns();
       complete = arm_.receive(now_ns, feedback_);
     }
-    if (!complete) miss_answers();
+    count_answers(complete);
 
     decide(now_ns);
     const std::int64_t done_ns = MonotonicClock::now_ns();
@@ -98,13 +102,13 @@ void CycleRunner::run(const std::atomic<bool>& stop) noexcept {
 std::int64_t CycleRunner::next_due(std::int64_t due_ns, std::int64_t now_ns) noexcept {
   due_ns += cycle_ns_;
   if (now_ns < due_ns) {
-    bucket_.good();
+    late_.good();
     return due_ns;
   }
   const std::int64_t skipped = (now_ns - due_ns) / cycle_ns_ + 1;
   statistics_.late_cycles += static_cast<std::uint64_t>(skipped);
-  bucket_.late(skipped);
-  if (bucket_.full()) controller_.report_overruns(statistics_.late_cycles);
+  late_.late(skipped);
+  if (late_.full()) controller_.report_overruns(statistics_.late_cycles);
   return due_ns + skipped * cycle_ns_;
 }
 

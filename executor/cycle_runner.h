@@ -7,11 +7,11 @@
 #include <atomic>
 #include <cstdint>
 
-#include "executor/black_box.h"
 #include "executor/controller.h"
-#include "executor/cycle_record.h"
-#include "executor/histogram.h"
 #include "executor/leaky_bucket.h"
+#include "executor/telemetry/black_box.h"
+#include "executor/telemetry/cycle_record.h"
+#include "executor/telemetry/histogram.h"
 #include "shared/ports/arm.h"
 
 namespace tenon::executor {
@@ -32,6 +32,9 @@ class CycleRunner {
     double feedback_deadline = 0.7;  ///< share of the cycle after which the controller goes ahead
     double black_box_s = 1.0;
     LeakyBucket::Parameters late;
+    /// Each cycle without its feedback costs some of the plan's accuracy, which no envelope sees:
+    /// one in a hundred can go on for ever.
+    LeakyBucket::Parameters incomplete{30.0, 0.01};
   };
 
   struct Statistics {
@@ -64,7 +67,7 @@ class CycleRunner {
   [[nodiscard]] const BlackBox& black_box() const noexcept { return black_box_; }
 
  private:
-  void miss_answers() noexcept;
+  void count_answers(bool complete) noexcept;
   void decide(std::int64_t now_ns) noexcept;
   void publish(std::int64_t wakeup_late_ns, std::int64_t compute_ns) noexcept;
   [[nodiscard]] std::int64_t next_due(std::int64_t due_ns, std::int64_t now_ns) noexcept;
@@ -75,7 +78,8 @@ class CycleRunner {
   Parameters parameters_;
   std::int64_t cycle_ns_;
   ArmFeedback feedback_;
-  LeakyBucket bucket_;
+  LeakyBucket late_;
+  LeakyBucket incomplete_;
   BlackBox black_box_;
   Statistics statistics_;
 };

@@ -22,6 +22,10 @@ const char* joint_unit(const Cell& cell, int joint) {
   return linear ? "m" : "rad";
 }
 
+std::string during(const Ending& ending) {
+  return ending.step < 0 ? "" : format("step %d: ", ending.step);
+}
+
 const char* to_string(ArmState state) {
   switch (state) {
     case ArmState::kUnconfigured:
@@ -86,25 +90,32 @@ const char* to_string(EndReason reason) {
       return "wrench_missing";
     case EndReason::kOverruns:
       return "overruns";
+    case EndReason::kOtherBranch:
+      return "other_branch";
+    case EndReason::kFeedbackPoor:
+      return "feedback_poor";
   }
   return "?";
 }
 
-bool wants_quick_stop(EndReason reason) {
+EndManner end_manner(EndReason reason) {
   switch (reason) {
     case EndReason::kNone:
     case EndReason::kPlanDone:
     case EndReason::kPlanFailed:
-    case EndReason::kStopRequested:
     case EndReason::kNotAtStart:
+    case EndReason::kOtherBranch:
     case EndReason::kTareUnsteady:
     case EndReason::kTareMoving:
-    case EndReason::kContactOnApproach:
     case EndReason::kEnableTimeout:
-      return false;
+      return EndManner::kHold;
+    case EndReason::kStopRequested:
+    case EndReason::kContactOnApproach:
+      return EndManner::kToolRamp;
     case EndReason::kUnreachable:
     case EndReason::kJointLimit:
     case EndReason::kJointSpeed:
+      return EndManner::kJointRamp;
     case EndReason::kForceFault:
     case EndReason::kTorqueFault:
     case EndReason::kSensorSaturated:
@@ -114,9 +125,10 @@ bool wants_quick_stop(EndReason reason) {
     case EndReason::kFeedbackMissing:
     case EndReason::kWrenchMissing:
     case EndReason::kOverruns:
-      return true;
+    case EndReason::kFeedbackPoor:
+      return EndManner::kQuickStop;
   }
-  return true;
+  return EndManner::kQuickStop;
 }
 
 std::string describe(const Transition& transition) {
@@ -150,10 +162,16 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return "stopped on request";
     case EndReason::kNotAtStart:
       return format(
-          "the tool is %.4g %s from the plan's start '%s', must be within %.4g: move it there or "
-          "use "
-          "--go-to-start",
-          e.value, e.index < 3 ? "m" : "rad", plan.start_name.c_str(), e.bound);
+          "the tool's %s is at %.4f %s, the plan's start '%s' has it at %.4f, must be "
+          "within %.3g: move it there or use --go-to-start",
+          axis_name(e.index), e.value, e.index < 3 ? "m" : "rad", plan.start_name.c_str(), e.wanted,
+          e.bound);
+    case EndReason::kOtherBranch:
+      return "joint " + joint_name(cell, e.index) +
+             format(
+                 " is at %.4f %s, the plan's start '%s' has it at %.4f, must be within %.3g: "
+                 "move it there or use --go-to-start",
+                 e.value, joint_unit(cell, e.index), plan.start_name.c_str(), e.wanted, e.bound);
     case EndReason::kTareUnsteady:
       return format(
           "sensor not steady while taring: standard deviation of %s is %.3g %s, at most "
@@ -167,14 +185,15 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return format("touched something on the way to the start: %s reads %.3g %s, at most %.3g",
                     axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
     case EndReason::kUnreachable:
-      return format("the commanded tool pose is out of the robot's reach by %.3g m or rad",
+      return during(e) +
+             format("the commanded tool pose is out of the robot's reach by %.3g m or rad",
                     e.value);
     case EndReason::kJointLimit:
-      return "joint " + joint_name(cell, e.index) +
-             format(" would go to %.6g %s, beyond its limit %.6g", e.value,
+      return during(e) + "joint " + joint_name(cell, e.index) +
+             format(" would come to rest at %.6g %s, beyond its limit %.6g", e.value,
                     joint_unit(cell, e.index), e.bound);
     case EndReason::kJointSpeed:
-      return "joint " + joint_name(cell, e.index) +
+      return during(e) + "joint " + joint_name(cell, e.index) +
              format(" would move at %.4g %s/s, at most %.4g", e.value, joint_unit(cell, e.index),
                     e.bound);
     case EndReason::kForceFault:
@@ -204,6 +223,9 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);
     case EndReason::kOverruns:
       return format("the control loop cannot keep its period: %.0f late cycles", e.value);
+    case EndReason::kFeedbackPoor:
+      return format("feedback was missing in %.0f cycles, too many for what the plan was made for",
+                    e.value);
   }
   return "?";
 }

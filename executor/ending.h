@@ -17,7 +17,7 @@ enum class EndReason : std::uint8_t {
   kPlanDone = 1,
   kPlanFailed = 2,         ///< index: step; transition says why
   kStopRequested = 3,      ///< by the user
-  kNotAtStart = 4,         ///< value: distance in m, bound
+  kNotAtStart = 4,         ///< index: axis; value: where the tool is, wanted, bound
   kTareUnsteady = 5,       ///< index: wrench axis; value: deviation, bound
   kTareMoving = 6,         ///< index: joint; value: motion while taring, bound
   kContactOnApproach = 7,  ///< index: wrench axis; value: N or Nm, bound
@@ -34,6 +34,8 @@ enum class EndReason : std::uint8_t {
   kFeedbackMissing = 18,  ///< index: joint; value: cycles in a row, bound
   kWrenchMissing = 19,    ///< value: s without a sample, bound
   kOverruns = 20,         ///< value: late cycles; the control loop cannot keep its period
+  kOtherBranch = 21,   ///< the tool is at the start, index: this joint is not; value, wanted, bound
+  kFeedbackPoor = 22,  ///< value: cycles without all of their feedback, too many of all
 };
 [[nodiscard]] const char* to_string(EndReason reason);
 
@@ -42,13 +44,21 @@ struct Ending {
   int index = -1;
   double value = 0.0;
   double bound = 0.0;
+  double wanted = 0.0;
+  int step = -1;  ///< that was running, for the reasons about joints
   Transition transition{};
   ArmFault arm_fault{};
   bool disable_confirmed = true;  ///< false: the arm never said that it is disabled
 };
 
-/// Whether the drives are told to stop by themselves at once, instead of the command ramping down.
-[[nodiscard]] bool wants_quick_stop(EndReason reason);
+/// How the motion comes to rest.
+enum class EndManner : std::uint8_t {
+  kHold = 0,       ///< nothing moves, or the plan has come to its own rest
+  kToolRamp = 1,   ///< the tool's setpoint ramps down, compliant
+  kJointRamp = 2,  ///< the joints ramp down: the tool has no way on
+  kQuickStop = 3,  ///< the drives stop by themselves at once
+};
+[[nodiscard]] EndManner end_manner(EndReason reason);
 
 /// One line with the numbers. @param arm_fault_text what hw says about arm_fault, may be empty.
 /// Allocates; not for real time.

@@ -1,5 +1,5 @@
 #pragma once
-// Decides when late cycles are too many: each fills the bucket, each good one lets a little out.
+// Decides when bad cycles are too many: each fills the bucket, each good one lets a little out.
 // Real-time, one thread.
 
 #include <algorithm>

@@ -30,7 +30,9 @@ class PayloadMotion {
     acceleration_ = change / cycle_s_;
   }
 
-  /// m/s^2 and rad/s^2, at the time of the sample that arrives next.
+  /// m/s and rad/s, at the time of the sample that arrives next.
+  [[nodiscard]] const Vector6& velocity() const { return velocity_; }
+  /// m/s^2 and rad/s^2, at that time.
   [[nodiscard]] const Vector6& acceleration() const { return acceleration_; }
 
  private:

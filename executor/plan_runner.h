@@ -38,6 +38,7 @@ class PlanRunner {
   /// One cycle. After the end the last setpoint holds.
   GuardedMove::Output update(const GuardedMove::Input& input);
 
+  [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] Status status() const { return status_; }
   /// The step that the last update() belonged to.
   [[nodiscard]] std::size_t step() const { return step_; }

@@ -1,9 +1,11 @@
 #pragma once
 // The mean of a resting sensor, refused where the sensor was not at rest. Real-time, one thread.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
+#include "shared/cell/robot.h"
 #include "shared/math/pose.h"
 
 namespace tenon::executor {
@@ -15,6 +17,18 @@ class SensorTare {
     double force_deviation_max_N = 0.5;  ///< standard deviation on any axis
     double torque_deviation_max_Nm = 0.05;
   };
+
+  /// For a sensor: it may be three times as noisy as its data sheet says, and where the sheet is
+  /// silent, or finer than a count, a count or a little is allowed.
+  [[nodiscard]] static Parameters parameters_for(const ForceTorqueSensor& sensor, int samples) {
+    constexpr double kForce_N = 0.05;
+    constexpr double kTorque_Nm = 0.005;
+    constexpr double kNoiseFactor = 3.0;
+    return {
+        samples,
+        std::max({kForce_N, kNoiseFactor * sensor.force_noise_N, sensor.force_per_count_N}),
+        std::max({kTorque_Nm, kNoiseFactor * sensor.torque_noise_Nm, sensor.torque_per_count_Nm})};
+  }
 
   enum class Status : std::uint8_t {
     kGathering = 0,

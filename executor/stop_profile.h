@@ -3,8 +3,7 @@
 // whatever velocity and acceleration it has. Knows nothing of contacts. Real-time: built in
 // constant time, no allocation.
 
-#include <array>
-
+#include "executor/stop_ramp.h"
 #include "shared/motion/guarded_move.h"
 #include "shared/motion/move_parameters.h"
 
@@ -18,17 +17,11 @@ class StopProfile {
 
   /// @param time_s since the stop began; from duration_s() on it rests.
   [[nodiscard]] GuardedMove::Setpoint at(double time_s) const;
-  [[nodiscard]] double duration_s() const { return duration_s_; }
+  [[nodiscard]] double duration_s() const { return ramp_.duration_s(); }
 
  private:
-  struct Segment {
-    double duration_s = 0.0;
-    double jerk = 0.0;
-  };
   GuardedMove::Setpoint start_;
-  double slope_ = 0.0;  ///< at the start, of the share of the velocity that is left, 1/s
-  std::array<Segment, 3> segments_{};
-  double duration_s_ = 0.0;
+  StopRamp ramp_;
 };
 
 }  // namespace tenon::executor

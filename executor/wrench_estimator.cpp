@@ -13,7 +13,7 @@ constexpr double kSaturation = 0.999;
 }  // namespace
 
 WrenchEstimator::WrenchEstimator(const Cell& cell)
-    : R_TB_(cell.X_BT.orientation.conjugate()),
+    : gravity_T_mps2_(cell.X_BT.orientation.conjugate() * Vector3(-kGravity_mps2 * cell.up_B)),
       X_SP_(compose(inverse(cell.X_FS), cell.X_FP)),
       mass_kg_(cell.payload_mass_kg),
       com_S_m_(cell.payload_com_m),
@@ -33,9 +33,15 @@ Vector6 WrenchEstimator::payload_wrench(const Vector3& specific_force_mps2) cons
   return wrench;
 }
 
+Vector3 WrenchEstimator::com_acceleration_mps2(const Vector3& to_com_T) const {
+  const Vector3 tip_mps2 = motion_.acceleration().head<3>();
+  const Vector3 alpha_radps2 = motion_.acceleration().tail<3>();
+  const Vector3 omega_radps = motion_.velocity().tail<3>();
+  return tip_mps2 + alpha_radps2.cross(to_com_T) + omega_radps.cross(omega_radps.cross(to_com_T));
+}
+
 void WrenchEstimator::tare(const Vector6& mean_raw, const Pose& X_TP) {
-  const Vector3 down_T = R_TB_ * Vector3(0.0, 0.0, -kGravity_mps2);
-  bias_ = mean_raw - payload_wrench(R_TS(X_TP).conjugate() * down_T);
+  bias_ = mean_raw - payload_wrench(R_TS(X_TP).conjugate() * gravity_T_mps2_);
   external_.setZero();
 }
 
@@ -50,11 +56,9 @@ WrenchEstimator::Status WrenchEstimator::update(const Vector6& raw, const Pose& 
 
   const Eigen::Quaterniond rotation = R_TS(X_TP);
   const Vector3 to_com_T = rotation * (com_S_m_ - X_SP_.position_m);
-  const Vector6& a = motion_.acceleration();
-  const Vector3 com_acceleration = a.head<3>() + Vector3(a.tail<3>()).cross(to_com_T);
-  const Vector3 down_T = R_TB_ * Vector3(0.0, 0.0, -kGravity_mps2);
+  const Vector3 com_mps2 = com_acceleration_mps2(to_com_T);
   const Vector6 contact =
-      raw - bias_ - payload_wrench(rotation.conjugate() * (down_T - com_acceleration));
+      raw - bias_ - payload_wrench(rotation.conjugate() * (gravity_T_mps2_ - com_mps2));
 
   // The same wrench about the tool tip instead of the sensor's origin.
   const Vector3 force_N = contact.head<3>();

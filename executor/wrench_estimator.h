@@ -1,8 +1,10 @@
 #pragma once
 // From the raw reading of a wrist sensor to the external wrench that guarded moves live on: tared,
 // without the payload's weight and inertia, moved to the tool tip, in task axes. The sensor is said
-// to read what acts on the load beyond it: contact + m (g - a) + bias. The base frame's z points
-// up. Real-time, one thread, no allocation.
+// to read what acts on the load beyond it: contact + m (g - a) + bias, with a that of the centre of
+// mass as the tool turns. The payload's own moment of inertia is left out: no cell knows it. Its
+// torque, I alpha, is 0.01 Nm for 1 kg within 6 cm at 3 rad/s^2. Real-time, one thread, no
+// allocation.
 
 #include <cstdint>
 
@@ -39,9 +41,11 @@ class WrenchEstimator {
  private:
   // Wrench that weight and inertia put on the sensor, for a specific force in sensor axes.
   [[nodiscard]] Vector6 payload_wrench(const Vector3& specific_force_mps2) const;
+  // Of the payload's centre of mass, task axes. @param to_com_T from the tip to it
+  [[nodiscard]] Vector3 com_acceleration_mps2(const Vector3& to_com_T) const;
   [[nodiscard]] Eigen::Quaterniond R_TS(const Pose& X_TP) const;
 
-  Eigen::Quaterniond R_TB_;
+  Vector3 gravity_T_mps2_;
   Pose X_SP_;
   double mass_kg_;
   Vector3 com_S_m_;

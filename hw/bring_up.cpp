@@ -23,7 +23,9 @@ constexpr std::array<ObjectSetting, 3> kIdentityObjects{{
 
 }  // namespace
 
-BringUp::BringUp(const Robot& robot) {
+BringUp::BringUp(const Robot& robot)
+    : master_cob_id_(tenon::canopen::kHeartbeat + robot.master_node),
+      listen_ns_(robot.heartbeat_timeout_ms * std::int64_t{1'000'000}) {
   const auto add_node = [&](std::uint8_t node, const std::vector<ObjectSetting>& settings) {
     nodes_.push_back(node);
     watch_.add(node);
@@ -42,7 +44,8 @@ BringUp::BringUp(const Robot& robot) {
 }
 
 void BringUp::restart() {
-  state_ = State::kReset;
+  state_ = State::kListen;
+  entered_ns_.reset();
   fault_ = {};
   identities_.clear();
   sdo_ = SdoClient{};
@@ -50,6 +53,9 @@ void BringUp::restart() {
 }
 
 void BringUp::process(const CanFrame& frame, std::int64_t now_ns, CanBus& bus) {
+  if (state_ == State::kListen) {
+    return listen(frame);
+  }
   if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
     const bool ours = watch_.process(*heartbeat, now_ns);
     const bool settled = state_ == State::kConfigure || state_ == State::kOperational;
@@ -63,13 +69,25 @@ void BringUp::process(const CanFrame& frame, std::int64_t now_ns, CanBus& bus) {
   }
 }
 
+void BringUp::listen(const CanFrame& frame) {
+  const bool betrays = frame.id == tenon::canopen::kSync || frame.id == master_cob_id_;
+  if (betrays && !frame.extended) {
+    fail(ArmFaultKind::kOtherMaster, 0, 0, frame.id);
+  }
+}
+
 void BringUp::update(std::int64_t now_ns, CanBus& bus) {
+  if (!entered_ns_) {
+    entered_ns_ = now_ns;
+  }
   switch (state_) {
-    case State::kReset:
-      enter_state(State::kBootUp, now_ns, bus);
+    case State::kListen:
+      if (now_ns - *entered_ns_ >= listen_ns_) {
+        enter_state(State::kBootUp, now_ns, bus);
+      }
       return;
     case State::kBootUp:
-      if (!reset_again_ && now_ns - entered_ns_ >= kBootUpTimeout_ns / 2) {
+      if (!reset_again_ && now_ns - *entered_ns_ >= kBootUpTimeout_ns / 2) {
         reset_again_ = true;
         for (const std::uint8_t node : nodes_) {
           if (watch_.state(node) != tenon::canopen::kStateBootUp) {
@@ -117,7 +135,7 @@ void BringUp::enter_state(State state, std::int64_t now_ns, CanBus& bus) {
       watch_.restart(now_ns);
       command_all(tenon::canopen::kNmtStart, bus);
       return;
-    case State::kReset:
+    case State::kListen:
     case State::kPreOperational:
     case State::kConfigure:
     case State::kStart:
@@ -133,7 +151,7 @@ void BringUp::await_all(std::uint8_t nmt_state, std::int64_t timeout_ns, State n
     if (watch_.state(node) == nmt_state) {
       continue;
     }
-    if (now_ns - entered_ns_ >= timeout_ns) {
+    if (now_ns - *entered_ns_ >= timeout_ns) {
       fail(ArmFaultKind::kNoAnswer, node, 0, nmt_state);
     }
     return;

@@ -3,8 +3,9 @@
 // and frames as arguments; what it sends leaves by the bus. Not real-time (built on vectors), one
 // thread.
 //
-//   kReset ----- NMT reset communication to every node ------------> kBootUp
-//   kBootUp ---- 700h + n: 00 from every node ----------------------> kAnnounce
+//   kListen ---- no foreign SYNC or heartbeat of the master's node -> kBootUp
+//                (for a heartbeat timeout: to reset an arm that another master moves would stop it)
+//   kBootUp ---- NMT reset communication, 700h + n: 00 from all ----> kAnnounce
 //                (who is late is reset once more at half time)
 //   kAnnounce -- NMT pre-operational, 1017h by SDO -----------------> kPreOperational
 //   kPreOperational -- heartbeat 7Fh from every node ---------------> kConfigure
@@ -15,6 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "hw/canopen/heartbeat_watch.h"
@@ -29,7 +31,7 @@ namespace tenon::hw {
 class BringUp {
  public:
   enum class State : std::uint8_t {
-    kReset,
+    kListen,
     kBootUp,
     kAnnounce,
     kPreOperational,
@@ -57,7 +59,7 @@ class BringUp {
   void restart();
   /// Takes in a frame.
   void process(const CanFrame& frame, std::int64_t now_ns, CanBus& bus);
-  /// Goes on as far as it can. The first call after restart() sets the start.
+  /// Goes on as far as it can. The first call after restart() starts listening.
   void update(std::int64_t now_ns, CanBus& bus);
 
   [[nodiscard]] State state() const { return state_; }
@@ -71,6 +73,7 @@ class BringUp {
   };
   enum class Transfer : std::uint8_t { kNone, kWriting, kReading };
 
+  void listen(const CanFrame& frame);
   void enter_state(State state, std::int64_t now_ns, CanBus& bus);
   void await_all(std::uint8_t nmt_state, std::int64_t timeout_ns, State next, std::int64_t now_ns,
                  CanBus& bus);
@@ -92,9 +95,12 @@ class BringUp {
   canopen::HeartbeatWatch watch_;
   canopen::SdoClient sdo_;
 
-  State state_ = State::kReset;
+  const std::uint32_t master_cob_id_;  ///< of the heartbeat that nobody but us may send
+  const std::int64_t listen_ns_;
+
+  State state_ = State::kListen;
   ArmFault fault_;
-  std::int64_t entered_ns_ = 0;
+  std::optional<std::int64_t> entered_ns_;  ///< unset: kListen has not begun
   bool reset_again_ = false;
   std::size_t task_ = 0;  ///< within the list of the state
   Transfer transfer_ = Transfer::kNone;

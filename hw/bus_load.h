@@ -29,7 +29,8 @@ struct BusLoad {
   return nominal_frame_bits(data_bytes) + (34 + 8 * data_bytes - 1) / 4;
 }
 
-/// SYNC, one 6-byte RPDO and one 8-byte TPDO a joint, two 8-byte force/torque frames.
+/// SYNC, one 6-byte RPDO (or half an 8-byte one, packed) and one 8-byte TPDO a joint, two 8-byte
+/// force/torque frames. The controlwords of packed targets are sent on change and not counted.
 [[nodiscard]] BusLoad bus_load(const Robot& robot);
 
 /// Throws InputError with the numbers where the worst case exceeds kWorstAllowed.

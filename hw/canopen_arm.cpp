@@ -34,6 +34,7 @@ CanopenArm::CanopenArm(const Robot& robot, CanBus& bus)
       joint_count_(checked(robot).joints.size()),
       sensor_(robot.sensor),
       master_node_(robot.master_node),
+      packed_(robot.targets_per_frame == 2),
       heartbeat_ns_(robot.heartbeat_ms * kNanosecondsPerMillisecond),
       heartbeat_timeout_ns_(robot.heartbeat_timeout_ms * kNanosecondsPerMillisecond),
       bring_up_(robot) {
@@ -402,10 +403,32 @@ void CanopenArm::send_setpoints(ArmRequest request, bool follow,
     if (!joints_[i].seen()) {
       continue;  // nothing is known that could be a safe target
     }
-    bool valid = true;
-    const CanFrame frame = joints_[i].command(request, follow, position[i], valid);
+    const bool valid = joints_[i].update(request, follow, position[i]);
     counters_.invalid_setpoints += valid ? 0 : 1;
-    send(frame);
+    if (!packed_) {
+      send(joints_[i].command_frame());
+    }
+  }
+  if (packed_) {
+    send_packed_setpoints();
+  }
+}
+
+void CanopenArm::send_packed_setpoints() noexcept {
+  // Controlwords first: a stop waits for no target.
+  for (std::size_t i = 0; i < joint_count_; ++i) {
+    if (!joints_[i].seen()) {
+      continue;
+    }
+    if (const auto frame = joints_[i].due_controlword_frame()) {
+      send(*frame);
+    }
+  }
+  for (std::size_t i = 0; i < joint_count_; i += 2) {
+    const JointChannel* second = i + 1 < joint_count_ ? &joints_[i + 1] : nullptr;
+    if (joints_[i].seen() && (second == nullptr || second->seen())) {
+      send(joints_[i].targets_frame(second));
+    }
   }
 }
 

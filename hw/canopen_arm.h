@@ -5,7 +5,7 @@
 //
 //   start_cycle   takes in what came late, then SYNC: drives act on their targets and answer
 //   receive       TPDO1 of every joint, the two halves of the wrench
-//   command       supervision, state machine, RPDO1 of every joint, the master's heartbeat
+//   command       supervision, state machine, RPDOs of every joint, the master's heartbeat
 //
 //   kUnconfigured --prepare()--> kDisabled --enabled--> kEnabling --all enabled--> kEnabled
 //                                    ^                                                |
@@ -101,12 +101,14 @@ class CanopenArm : public Arm {
   // Sending.
   void send(const CanFrame& frame) noexcept;
   void send_setpoints(ArmRequest request, bool follow, const JointVector& position) noexcept;
+  void send_packed_setpoints() noexcept;
   void send_heartbeat(std::int64_t now_ns) noexcept;
 
   CanBus& bus_;
   const std::size_t joint_count_;
   const ForceTorqueSensor sensor_;
   const std::uint8_t master_node_;
+  const bool packed_;  ///< two targets a frame
   const std::int64_t heartbeat_ns_;
   const std::int64_t heartbeat_timeout_ns_;
 

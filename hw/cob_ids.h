@@ -7,6 +7,10 @@
 //   | 182h       | torque                                           |
 //   | 190h + i   | TPDO1 of joint i = 0, 1, ...: what it does       |
 //   | 200h + n   | RPDO1 of node n, as predefined: what it shall do |
+//   | 300h + n   | RPDO2 of node n, as predefined: controlword      |
+//
+// RPDO2 is used where targets are packed: then 200h + n, with the node of the first of two joints,
+// carries the targets of both, and no controlword.
 //
 // Joints leave their predefined 180h + n because nodes 1 and 2 would meet the force/torque frames
 // there. SYNC, EMCY, SDO, NMT and heartbeat are as predefined by CiA 301.
@@ -27,6 +31,9 @@ inline constexpr std::uint32_t kJointFeedbackCobId = 0x190;
 }
 [[nodiscard]] constexpr std::uint32_t joint_command_cob_id(std::uint8_t node) {
   return tenon::canopen::kRpdo1 + node;
+}
+[[nodiscard]] constexpr std::uint32_t joint_controlword_cob_id(std::uint8_t node) {
+  return tenon::canopen::kRpdo2 + node;
 }
 
 }  // namespace tenon::hw

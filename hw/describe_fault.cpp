@@ -103,10 +103,15 @@ std::string drive_state(const ArmFault& fault) {
       cia402::to_string(cia402::decode_statusword(word)), fault.code);
 }
 
+/// The standard's words where it has some, else the number alone.
+std::string error_code(std::uint32_t code) {
+  const char* text = canopen::emergency_text(code);
+  return format("0x%04X", code) + (text != nullptr ? format(" (%s)", text) : std::string());
+}
+
 std::string drive_fault(const ArmFault& fault) {
   if (fault.object >> 8 == tenon::canopen::kErrorCode) {
-    return format("drive fault 0x%04X (%s); see the drive's manual for the code", fault.code,
-                  canopen::emergency_text(fault.code));
+    return "drive fault " + error_code(fault.code) + "; see the drive's manual for the code";
   }
   return format(
       "drive fault (statusword 0x%04X); read its error code with tenon-can read %u "
@@ -142,8 +147,7 @@ std::string sensor_invalid(const ArmFault& fault, const Robot& robot) {
     case tenon::canopen::kSensorStatus:
       return format("reports status 0x%04X (2002h) where 0 is good; check the sensor", fault.code);
   }
-  return format("reports error 0x%04X (%s); check the sensor", fault.code,
-                canopen::emergency_text(fault.code));
+  return "reports error " + error_code(fault.code) + "; check the sensor";
 }
 
 }  // namespace
@@ -184,6 +188,12 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
     case ArmFaultKind::kBusDown:
       return "the CAN bus is gone (interface down or connection closed); check the adapter, or "
              "that the other end still runs";
+    case ArmFaultKind::kOtherMaster:
+      return format(
+          "another master runs on this bus: 0x%03X (%s) came before this one had sent "
+          "anything; stop it first",
+          fault.code,
+          fault.code == tenon::canopen::kSync ? "SYNC" : "heartbeat of the master's node");
     case ArmFaultKind::kBusOff:
       return "the CAN controller went bus-off (too many errors); check wiring, termination and "
              "bit rate";

@@ -24,6 +24,8 @@ JointChannel::JointChannel(const Joint& joint, std::size_t index)
 void JointChannel::reset() {
   missing_cycles = 0;
   seen_ = reached_enabled_ = false;
+  request_ = ArmRequest::kDisabled;
+  sent_controlword_.reset();
   statusword_ = controlword_ = 0;
   position_counts_ = target_counts_ = 0;
   effort_permille_ = 0;
@@ -35,15 +37,15 @@ bool JointChannel::take_feedback(const CanFrame& frame) {
   }
   const std::span<const std::uint8_t> bytes(frame.data);
   statusword_ = load_le<std::uint16_t>(bytes);
-  position_counts_ = load_le<std::int32_t>(bytes.subspan(2));
-  effort_permille_ = load_le<std::int16_t>(bytes.subspan(6));
+  effort_permille_ = load_le<std::int16_t>(bytes.subspan(2));
+  position_counts_ = load_le<std::int32_t>(bytes.subspan(4));
   seen_ = true;
   return true;
 }
 
-CanFrame JointChannel::command(ArmRequest request, bool follow, double setpoint, bool& valid) {
+bool JointChannel::update(ArmRequest request, bool follow, double setpoint) {
   const bool enabled = state() == DriveState::kOperationEnabled;
-  valid = true;
+  bool valid = true;
   if (follow) {
     const double counts = std::round(setpoint * counts_per_unit_ + zero_counts_);
     valid = std::isfinite(counts);
@@ -59,12 +61,40 @@ CanFrame JointChannel::command(ArmRequest request, bool follow, double setpoint,
   }
   reached_enabled_ = request == ArmRequest::kEnabled && (reached_enabled_ || enabled);
   controlword_ = cia402::next_controlword(state(), request, controlword_, interpolated_);
+  request_ = request;
+  return valid;
+}
 
+CanFrame JointChannel::command_frame() const {
   CanFrame frame;
   frame.id = joint_command_cob_id(node_);
   frame.length = 6;
   store_le(std::span(frame.data), controlword_);
   store_le(std::span(frame.data).subspan(2), target_counts_);
+  return frame;
+}
+
+CanFrame JointChannel::targets_frame(const JointChannel* second) const {
+  CanFrame frame;
+  frame.id = joint_command_cob_id(node_);
+  frame.length = second != nullptr ? 8 : 4;
+  store_le(std::span(frame.data), target_counts_);
+  if (second != nullptr) store_le(std::span(frame.data).subspan(4), second->target_counts_);
+  return frame;
+}
+
+std::optional<CanFrame> JointChannel::due_controlword_frame() {
+  // Mode 7 obeys bit 4 without a change of state.
+  const bool moves = request_ != ArmRequest::kEnabled || !interpolated_ ||
+                     (statusword_ & cia402::kStatusFollowsTargets) != 0;
+  if (sent_controlword_ == controlword_ && cia402::has_followed(state(), request_) && moves) {
+    return std::nullopt;
+  }
+  sent_controlword_ = controlword_;
+  CanFrame frame;
+  frame.id = joint_controlword_cob_id(node_);
+  frame.length = 2;
+  store_le(std::span(frame.data), controlword_);
   return frame;
 }
 

@@ -2,11 +2,18 @@
 // One joint's process data: frames to SI and back, and its drive's place in the state machine.
 // Real-time, no clock, no I/O; one thread; owns its memory.
 //
-//   TPDO1 190h + i: | 0-1 u16 statusword  | 2-5 i32 position, counts | 6-7 i16 effort, per mille |
-//   RPDO1 200h + n: | 0-1 u16 controlword | 2-5 i32 target, counts   |
+//   TPDO1 190h + i: | 0-1 u16 statusword  | 2-3 i16 effort, per mille | 4-7 i32 position, counts |
+//   RPDO1 200h + n: | 0-1 u16 controlword | 2-5 i32 target, counts    |
+//
+// and where targets are packed, n being the node of the first of two joints (the last of an odd
+// number of joints has a frame of four bytes for itself)
+//
+//   RPDO1 200h + n: | 0-3 i32 target of the first, counts | 4-7 i32 target of the second |
+//   RPDO2 300h + n: | 0-1 u16 controlword | of each node n, acts when it arrives
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "hw/cia402/drive_state.h"
 #include "shared/cell/robot.h"
@@ -26,10 +33,16 @@ class JointChannel {
 
   /// False: not 8 bytes, dropped.
   [[nodiscard]] bool take_feedback(const CanFrame& frame);
-  /// The RPDO for what is asked: with `setpoint` (m or rad) once the whole arm is enabled, before
-  /// that with the actual position. A setpoint that is no number keeps the last target and clears
-  /// `valid`.
-  [[nodiscard]] CanFrame command(ArmRequest request, bool follow, double setpoint, bool& valid);
+  /// Target and controlword for what is asked: `setpoint` (m or rad) once the whole arm is enabled,
+  /// before that the actual position. False: the setpoint is no number, the last target stays.
+  [[nodiscard]] bool update(ArmRequest request, bool follow, double setpoint);
+  /// RPDO1 with both.
+  [[nodiscard]] CanFrame command_frame() const;
+  /// RPDO1 of packed targets. @param second of the pair, nullptr where there is none
+  [[nodiscard]] CanFrame targets_frame(const JointChannel* second) const;
+  /// RPDO2: empty where the drive was sent this controlword and has obeyed. So a change leaves at
+  /// once, and what was lost on the way is repeated every cycle.
+  [[nodiscard]] std::optional<CanFrame> due_controlword_frame();
 
   [[nodiscard]] std::uint8_t node() const { return node_; }
   [[nodiscard]] std::uint32_t feedback_cob_id() const { return feedback_cob_id_; }
@@ -52,6 +65,8 @@ class JointChannel {
   double rated_effort_ = 0.0;
 
   bool seen_ = false;
+  ArmRequest request_ = ArmRequest::kDisabled;
+  std::optional<std::uint16_t> sent_controlword_;  ///< by RPDO2
   bool reached_enabled_ = false;
   std::uint16_t statusword_ = 0;
   std::uint16_t controlword_ = 0;

@@ -176,7 +176,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--can", arguments.uri, "socketcan:IFACE, slcan:/dev/TTY or slcan://HOST:PORT")
       ->required();
-  app.add_option("--bitrate", arguments.bitrate_bps, "bit/s, for slcan adapters")
+  app.add_option("--bitrate", arguments.bitrate_bps,
+                 "bit/s; set on slcan adapters, checked on SocketCAN")
       ->capture_default_str();
   app.require_subcommand(1);
   const auto* scan_command = app.add_subcommand("scan", "ask all 127 nodes who they are");

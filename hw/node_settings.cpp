@@ -63,6 +63,46 @@ void append_timing_and_mode(Settings& settings, const Robot& robot, const Joint&
   settings.push_back({Action::kAwait, kModeDisplay, 0, 1, mode});
 }
 
+canopen::PdoEntry target_of(const Joint& joint) {
+  return joint.mode == Joint::Mode::kInterpolatedPosition
+             ? canopen::PdoEntry{tenon::canopen::kInterpolationData, 1, 32}
+             : canopen::PdoEntry{tenon::canopen::kTargetPosition, 0, 32};
+}
+
+void append_receive_pdos(Settings& settings, const Robot& robot, std::size_t index) {
+  using Direction = PdoConfiguration::Direction;
+  const Joint& joint = robot.joints[index];
+  const canopen::PdoEntry controlword{tenon::canopen::kControlword, 0, 16};
+  const canopen::PdoEntry target = target_of(joint);
+  if (robot.targets_per_frame == 1) {
+    canopen::append_pdo(settings, {Direction::kReceive,
+                                   1,
+                                   joint_command_cob_id(joint.node),
+                                   canopen::kEverySync,
+                                   {controlword, target}});
+    return;
+  }
+  // Both of a pair take the same frame, each its own half.
+  const std::size_t first = index - index % 2;
+  PdoConfiguration targets{Direction::kReceive,
+                           1,
+                           joint_command_cob_id(robot.joints[first].node),
+                           canopen::kEverySync,
+                           {target}};
+  const canopen::PdoEntry skipped{canopen::kDummyI32, 0, 32};
+  if (index != first) {
+    targets.entries.insert(targets.entries.begin(), skipped);
+  } else if (index + 1 < robot.joints.size()) {
+    targets.entries.push_back(skipped);
+  }
+  canopen::append_pdo(settings, targets);
+  canopen::append_pdo(settings, {Direction::kReceive,
+                                 2,
+                                 joint_controlword_cob_id(joint.node),
+                                 canopen::kAtOnce,
+                                 {controlword}});
+}
+
 [[noreturn]] void refuse(const Robot& robot, const std::string& what) {
   throw InputError("robot '" + robot.name + "': " + what);
 }
@@ -120,20 +160,13 @@ Settings joint_settings(const Robot& robot, std::size_t index) {
   settings.push_back({Action::kExpect, kDeviceType, 0, 4, kDriveProfile, 0xFFFF});
   append_timing_and_mode(settings, robot, joint);
   append_supervision(settings, robot, joint);
-  const bool interpolated = joint.mode == Joint::Mode::kInterpolatedPosition;
-  canopen::append_pdo(settings, {PdoConfiguration::Direction::kReceive,
-                                 1,
-                                 joint_command_cob_id(joint.node),
-                                 canopen::kEverySync,
-                                 {{kControlword, 0, 16},
-                                  {interpolated ? kInterpolationData : kTargetPosition,
-                                   static_cast<std::uint8_t>(interpolated ? 1 : 0), 32}}});
+  append_receive_pdos(settings, robot, index);
   canopen::append_pdo(settings,
                       {PdoConfiguration::Direction::kTransmit,
                        1,
                        joint_feedback_cob_id(index),
                        canopen::kEverySync,
-                       {{kStatusword, 0, 16}, {kPositionActual, 0, 32}, {kTorqueActual, 0, 16}}});
+                       {{kStatusword, 0, 16}, {kTorqueActual, 0, 16}, {kPositionActual, 0, 32}}});
   for (const std::uint8_t number : {std::uint8_t{2}, std::uint8_t{3}, std::uint8_t{4}}) {
     canopen::append_unused_tpdo(settings, joint.node, number);
   }
@@ -187,6 +220,9 @@ void check_robot(const Robot& robot) {
     refuse(robot, "cycle of " + std::to_string(robot.cycle_us) +
                       " us cannot be written to 60C2h (1..255 times a power of ten); take a "
                       "multiple of 1000 us");
+  }
+  if (robot.targets_per_frame != 1 && robot.targets_per_frame != 2) {
+    refuse(robot, std::to_string(robot.targets_per_frame) + " targets a frame, must be 1 or 2");
   }
   if (robot.heartbeat_ms == 0 || robot.heartbeat_timeout_ms > 65535 ||
       robot.heartbeat_timeout_ms < 2 * robot.heartbeat_ms) {

@@ -29,7 +29,7 @@ struct InterpolationPeriod {
 
 /// Throws InputError with one line where the robot cannot be driven: no joint or too many, a node
 /// outside 1..127 or used twice, a period that 60C2h cannot hold, gears or times that are not
-/// positive, a master heartbeat slower than half its timeout.
+/// positive, a master heartbeat slower than half its timeout, targets that no frame holds.
 void check_robot(const Robot& robot);
 
 }  // namespace tenon::hw

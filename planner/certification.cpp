@@ -125,7 +125,7 @@ void check_same_task(const Plan& plan, const Task& task) {
   const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-5 * std::abs(b) + 1e-9; };
   const auto refuse = [&](const char* what) {
     throw InputError(std::string("plan: its ") + what + " is not that of task '" + task.name +
-                     "': plan again");
+                     "': plan again, or give the --cell that it was made for");
   };
   if (!plan.goal.position_m.isApprox(task.goal.position_m, 1e-5) ||
       plan.goal.orientation.angularDistance(task.goal.orientation) > 1e-5) {

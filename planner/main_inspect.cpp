@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/cell_fit.h"
 #include "planner/html_report.h"
 #include "planner/inspection.h"
 #include "planner/summary.h"
@@ -28,6 +29,7 @@ struct Arguments {
   std::string task;
   std::string report;
   std::string recertify;
+  std::string cell;
   std::size_t threads = 1;
 };
 
@@ -45,6 +47,7 @@ void describe(CLI::App& app, Arguments& a) {
       ->needs(task);
   app.add_option("--recertify", a.recertify,
                  "Task file: simulate the plan's whole chain again; exit status 1 if it fails");
+  app.add_option("--cell", a.cell, "Cell file that the plan was made with");
   app.add_option("--threads", a.threads, "Threads of the simulation")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
@@ -56,7 +59,8 @@ std::vector<std::uint8_t> bytes_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-Task task_of(const Plan& plan, const std::string& file) {
+// The task as the planner had it.
+Task task_of(const Plan& plan, const std::string& file, const std::string& cell_file) {
   Task task = load_task(file);
   if (task.hash != plan.task_hash) {
     std::fprintf(stderr,
@@ -64,11 +68,12 @@ Task task_of(const Plan& plan, const std::string& file) {
                  "made from\n",
                  file.c_str());
   }
-  return task;
+  if (cell_file.empty()) return task;
+  return planner::fit_to_cell(task, load_cell(cell_file)).task;
 }
 
 bool recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
-  const Task task = task_of(plan, a.recertify);
+  const Task task = task_of(plan, a.recertify, a.cell);
   planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
   const planner::Certification certification = planner::certify(bytes, task, pool);
   std::FILE* out = a.json == "-" ? stderr : stdout;
@@ -95,7 +100,7 @@ bool recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint
 }
 
 void write_report(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
-  const Task task = task_of(plan, a.task);
+  const Task task = task_of(plan, a.task, a.cell);
   planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
   planner::ValidationParameters few;
   few.draws = kReportDraws;

@@ -5,7 +5,10 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "planner/cell_fit.h"
 #include "planner/planner.h"
 #include "planner/summary.h"
 #include "shared/base/error.h"
@@ -34,7 +37,7 @@ void describe(CLI::App& app, Arguments& a) {
   app.footer("Example: tenon-plan planner/tasks/box_on_table_2d.yaml --start 1 -o plan.tnp");
   app.add_option("task", a.task, "Task file")->required();
   app.add_option("--start", a.start, "Name of the start to plan from (the task's first)");
-  app.add_option("--cell", a.cell, "Cell file: plan for its contact stiffness and latency");
+  app.add_option("--cell", a.cell, "Cell file: plan with what its arm and contact stiffness allow");
   app.add_option("--method", a.method, "Planner")
       ->check(CLI::IsMember({"mha"}))
       ->capture_default_str();
@@ -70,17 +73,19 @@ int run(const Arguments& a) {
   }
   check_writable(a.output);
   if (!a.json.empty() && a.json != "-") check_writable(a.json);
-  const Start& start = chosen_start(task, a.start);
 
   planner::PlannerOptions options;
   options.threads = a.threads;
   options.validation.draws = a.draws;
   options.assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
+  std::vector<std::string> adapted;
   if (!a.cell.empty()) {
-    const Cell cell = load_cell(a.cell);
-    options.assumptions.contact_stiffness_Npm = cell.contact_stiffness_Npm;
-    options.assumptions.latency_max_s = latency_s(cell.robot);
+    planner::CellFit fit = planner::fit_to_cell(task, load_cell(a.cell));
+    task = std::move(fit.task);
+    options.assumptions = fit.assumptions;
+    adapted = std::move(fit.changes);
   }
+  const Start& start = chosen_start(task, a.start);
   sim::OdeRollout rollout(task);
   planner::check_start(task, start, rollout);
 
@@ -88,7 +93,8 @@ int run(const Arguments& a) {
   const auto now_s = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   };
-  const planner::PlanReport report = planner::make_plan(task, start, rollout, options, now_s);
+  planner::PlanReport report = planner::make_plan(task, start, rollout, options, now_s);
+  report.adapted = std::move(adapted);
 
   if (a.json == "-") {
     std::fputs(planner::statistics_json(report).c_str(), stdout);

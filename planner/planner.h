@@ -55,6 +55,7 @@ struct PlanReport {
   std::size_t attractors = 0;
   std::size_t states = 0;
   std::vector<std::string> refusals;  ///< what was refuted, and why
+  std::vector<std::string> adapted;   ///< what the cell changed in the task, see fit_to_cell()
   SuccessorEngine::Counters search_moves;
   SuccessorEngine::Counters attractor_moves;
   std::uint64_t certification_moves = 0;

@@ -93,6 +93,7 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
       "peak force %.0f N\n",
       v.at_goal(), v.draws.size(), v.at_goal_within(task.particle_sigmas),
       v.within(task.particle_sigmas), task.particle_sigmas, peak_force_N(report));
+  for (const std::string& change : report.adapted) text += "for the cell: " + change + "\n";
   for (const std::string& refusal : report.refusals) text += "refuted: " + refusal + "\n";
   return text + step_table(plan);
 }
@@ -109,6 +110,7 @@ std::string statistics_json(const PlanReport& report) {
   json["states"] = report.states;
   json["expansions"] = report.expansions;
   json["refusals"] = report.refusals;
+  json["adapted"] = report.adapted;
   json["moves"] = {{"attractors", moves(report.attractor_moves)},
                    {"search", moves(report.search_moves)},
                    {"certification", report.certification_moves},

@@ -8,9 +8,11 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hw/can/monotonic_clock.h"
 #include "hw/can/open_bus.h"
@@ -18,8 +20,12 @@
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
+#include "sim/devices/robot_devices.h"
+#include "sim/faults/fault_spec.h"
+#include "sim/faults/faulty_bus.h"
 #include "sim/virtual_arm/environment_offset.h"
 #include "sim/virtual_arm/virtual_cell.h"
+#include "sim/virtual_arm/world_draw.h"
 
 namespace {
 
@@ -38,6 +44,9 @@ struct CommandLine {
   std::string start;
   std::optional<std::uint64_t> seed;
   std::string offset;
+  std::string experiment;
+  std::vector<std::string> faults;
+  std::string eds;
   std::string json;
   std::string ready_file;
   bool once = false;
@@ -69,7 +78,7 @@ struct Lateness {
   }
 };
 
-Lateness run(sim::VirtualCell& cell, CanBus& bus, const hw::SlcanServer* server) {
+Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer* server) {
   Lateness lateness;
   OneClient one_client;
   std::int64_t due_ns = hw::monotonic_now_ns();
@@ -79,6 +88,7 @@ Lateness run(sim::VirtualCell& cell, CanBus& bus, const hw::SlcanServer* server)
       lateness.count(now_ns - due_ns);
       due_ns += kTick_ns * ((now_ns - due_ns) / kTick_ns + 1);
     }
+    bus.advance(now_ns);
     cell.step(now_ns, bus);
     if (server != nullptr &&
         one_client.finished(server->clients() > 0, cell.at_standstill(), now_ns)) {
@@ -110,8 +120,13 @@ void raise_priority() {
   static_cast<void>(::sched_setscheduler(0, SCHED_FIFO, &parameters));
 }
 
+void write_data_sheets(const std::filesystem::path& folder, const Robot& robot) {
+  for (const sim::EdsFile& file : sim::eds_files(robot)) write_file(folder / file.name, file.text);
+}
+
 int simulate(const CommandLine& line) {
   const Cell cell_file = load_cell(line.cell);
+  if (!line.eds.empty()) write_data_sheets(line.eds, cell_file.robot);
   const Task task = load_task(line.task);
   sim::VirtualCell::Options options;
   options.start = line.start;
@@ -122,6 +137,10 @@ int simulate(const CommandLine& line) {
     options.offset = sim::draw_offset(start, task.coordinates, *line.seed);
     std::printf("seed %llu\n", static_cast<unsigned long long>(*line.seed));
   }
+  if (!line.experiment.empty()) {
+    options.world = sim::draw_world(load_experiment(line.experiment), task, *line.seed);
+  }
+  for (const std::string& fault : line.faults) options.faults.push_back(sim::parse_fault(fault));
   if (!line.json.empty()) check_writable(line.json);
   sim::VirtualCell cell(cell_file, task, options);
 
@@ -132,7 +151,9 @@ int simulate(const CommandLine& line) {
   }
   raise_priority();
   announce(line, *bus);
-  const Lateness lateness = run(cell, *bus, line.once ? server : nullptr);
+  sim::FaultyBus faulty_bus(*bus, options.faults, cell_file.robot.master_node,
+                            hw::monotonic_now_ns());
+  const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr);
 
   sim::Truth truth = cell.truth();
   truth.wakes = lateness.wakes;
@@ -150,6 +171,12 @@ int simulate(const CommandLine& line) {
 }
 
 void stop(int /*signal*/) { stop_requested = 1; }
+
+void answer_help(const std::string& fault) {
+  if (fault != "help") return;
+  std::fputs(sim::fault_help().c_str(), stdout);
+  throw CommandLineAnswered{};
+}
 
 int parse_and_simulate(int argc, char** argv) {
   CommandLine line;
@@ -171,6 +198,16 @@ int parse_and_simulate(int argc, char** argv) {
   seed->check(CLI::Range(0.0, kSeedMax).description("[0, 2^53]"));
   app.add_option("--offset", line.offset, "how far the environment is off: x_m=0.02,y_m=-0.01")
       ->excludes(seed);
+  app.add_option("--experiment", line.experiment,
+                 "ranges to draw from how the world differs from what task and cell file say")
+      ->needs(seed);
+  app.add_option("--fault", line.faults,
+                 "a fault of the bus or a device, as drop:node=3,time_s=2; may be repeated; "
+                 "--fault help lists them")
+      ->allow_extra_args(false)
+      ->each(answer_help);
+  app.add_option("--eds", line.eds, "folder for an EDS file of every node, written at the start")
+      ->check(CLI::ExistingDirectory);
   app.add_option("--json", line.json, "file for the truth, written whole at the end");
   app.add_option("--ready-file", line.ready_file, "file that appears when the bus is open");
   app.add_flag("--once", line.once, "end when the client has gone and the arm is at rest");

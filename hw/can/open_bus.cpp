@@ -43,10 +43,11 @@ Authority authority_of(const std::string& uri, std::string_view text) {
 
 }  // namespace
 
-std::unique_ptr<CanBus> open_bus(const std::string& uri, std::uint32_t bitrate_bps) {
+std::unique_ptr<CanBus> open_bus(const std::string& uri, std::uint32_t bitrate_bps,
+                                 std::uint32_t burst_frames) {
   std::string_view rest = uri;
   if (take_prefix(rest, "socketcan:")) {
-    return std::make_unique<SocketcanBus>(std::string(rest));
+    return std::make_unique<SocketcanBus>(std::string(rest), bitrate_bps, burst_frames);
   }
   if (take_prefix(rest, "slcan-listen://")) {
     const Authority authority = authority_of(uri, rest);

@@ -14,8 +14,10 @@
 
 namespace tenon::hw {
 
-/// @param bitrate_bps told to slcan adapters; SocketCAN interfaces are set from outside
-[[nodiscard]] std::unique_ptr<CanBus> open_bus(const std::string& uri, std::uint32_t bitrate_bps);
+/// @param bitrate_bps told to slcan adapters; a SocketCAN interface is set from outside and checked
+/// @param burst_frames what a cycle sends at once; a SocketCAN transmit queue must hold it
+[[nodiscard]] std::unique_ptr<CanBus> open_bus(const std::string& uri, std::uint32_t bitrate_bps,
+                                               std::uint32_t burst_frames = 1);
 
 /// The port of a slcan-listen bus, 0 for any other.
 [[nodiscard]] std::uint16_t listening_port(const CanBus& bus);

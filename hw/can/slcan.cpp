@@ -69,6 +69,16 @@ std::size_t slcan_encode(const CanFrame& frame, std::span<char, kSlcanMaxFrame> 
   return size;
 }
 
+std::size_t slcan_encode_stamped(const CanFrame& frame, std::int64_t time_ms,
+                                 std::span<char, kSlcanMaxStamped> out) noexcept {
+  constexpr std::int64_t kMinute_ms = 60'000;
+  std::size_t size = slcan_encode(frame, out.first<kSlcanMaxFrame>()) - 1;
+  const auto stamp = static_cast<std::uint32_t>(time_ms % kMinute_ms);
+  for (int shift = 12; shift >= 0; shift -= 4) out[size++] = kHexDigits[stamp >> shift & 0xF];
+  out[size++] = '\r';
+  return size;
+}
+
 std::optional<char> slcan_bitrate_digit(std::uint32_t bitrate_bps) noexcept {
   constexpr std::array<std::uint32_t, 9> kBitrates{10'000,  20'000,  50'000,  100'000,  125'000,
                                                    250'000, 500'000, 800'000, 1'000'000};

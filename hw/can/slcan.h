@@ -23,12 +23,17 @@
 
 namespace tenon::hw {
 
-/// T, identifier, length, data, CR.
+/// T, identifier, length, data, CR; and with a timestamp.
 inline constexpr std::size_t kSlcanMaxFrame = 1 + 8 + 1 + 16 + 1;
+inline constexpr std::size_t kSlcanMaxStamped = kSlcanMaxFrame + 4;
 
 /// Writes a frame as a line with its CR; returns the count of characters.
 [[nodiscard]] std::size_t slcan_encode(const CanFrame& frame,
                                        std::span<char, kSlcanMaxFrame> out) noexcept;
+
+/// With a timestamp: the time modulo a minute.
+[[nodiscard]] std::size_t slcan_encode_stamped(const CanFrame& frame, std::int64_t time_ms,
+                                               std::span<char, kSlcanMaxStamped> out) noexcept;
 
 /// The S command's digit for a bit rate: 0..8 for 10 k to 1 M. Empty where slcan has none.
 [[nodiscard]] std::optional<char> slcan_bitrate_digit(std::uint32_t bitrate_bps) noexcept;
@@ -57,7 +62,7 @@ class SlcanParser {
  private:
   [[nodiscard]] std::optional<Message> finish_line() noexcept;
 
-  std::array<char, kSlcanMaxFrame - 1 + 4> line_{};  // with a timestamp
+  std::array<char, kSlcanMaxStamped - 1> line_{};
   std::size_t length_ = 0;
   bool overlong_ = false;
   std::uint64_t malformed_ = 0;

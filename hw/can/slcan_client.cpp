@@ -52,9 +52,12 @@ bool SlcanClient::receive(ReceivedFrame& received) noexcept {
         ++status_.received;
         return true;
       case SlcanParser::Message::Kind::kRefused:
-        ++status_.error_frames;
+        status_.error_frames += answered_ ? 1 : 0;
+        answered_ = true;
         break;
       case SlcanParser::Message::Kind::kAccepted:
+        answered_ = true;
+        break;
       case SlcanParser::Message::Kind::kCommand:
         break;
     }

@@ -28,6 +28,7 @@ class SlcanClient : public CanBus {
  private:
   SlcanStream stream_;
   CanBusStatus status_;
+  bool answered_ = false;  ///< C, which is refused where the channel was closed anyway
 };
 
 }  // namespace tenon::hw

@@ -12,6 +12,13 @@
 #include "hw/can/slcan.h"
 
 namespace tenon::hw {
+namespace {
+
+constexpr std::string_view kAccepted = "\r";
+constexpr std::string_view kRefused = "\a";
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+
+}  // namespace
 
 SlcanServer::SlcanServer(int listener) : listener_(listener) {}
 
@@ -23,10 +30,7 @@ SlcanServer::~SlcanServer() {
 SendResult SlcanServer::send(const CanFrame& frame) noexcept {
   std::size_t failed = 0;
   const std::size_t taken = deliver(frame, nullptr, failed);
-  if (taken == 0 && failed > 0) {
-    ++status_.send_failures;
-    return SendResult::kQueueFull;
-  }
+  if (taken == 0 && failed > 0) return SendResult::kQueueFull;
   ++status_.sent;
   return SendResult::kSent;
 }
@@ -52,7 +56,7 @@ CanBusStatus SlcanServer::status() const noexcept {
   CanBusStatus status = status_;
   for (const Client& client : clients_) {
     status.malformed += client.stream.malformed();
-    status.send_failures += client.stream.dropped();
+    status.send_failures += client.lost + client.stream.dropped();
   }
   return status;
 }
@@ -69,33 +73,46 @@ std::uint16_t SlcanServer::port() const noexcept {
 }
 
 std::size_t SlcanServer::clients() const noexcept {
-  return static_cast<std::size_t>(std::count_if(
-      clients_.begin(), clients_.end(),
-      [](const Client& client) { return client.stream.is_open() && client.channel_open; }));
+  return static_cast<std::size_t>(
+      std::count_if(clients_.begin(), clients_.end(), [](const Client& c) { return c.hears(); }));
 }
 
 /// The next frame out of the buffers; commands on the way are obeyed.
 bool SlcanServer::next_frame(ReceivedFrame& received) noexcept {
   for (Client& client : clients_) {
     while (const auto message = client.stream.next()) {
+      refuse_malformed(client);
       if (message->kind == SlcanParser::Message::Kind::kCommand) {
-        obey(client, message->text);
+        (void)client.stream.stage(obey(client, message->text));
+      } else if (message->kind == SlcanParser::Message::Kind::kFrame &&
+                 take_frame(client, message->frame)) {
+        received = {message->frame, monotonic_now_ns()};
+        ++status_.received;
+        return true;
       }
-      if (message->kind != SlcanParser::Message::Kind::kFrame) {
-        continue;
-      }
-      if (!client.channel_open) {
-        (void)client.stream.stage("\a");
-        continue;
-      }
-      std::size_t failed = 0;
-      (void)deliver(message->frame, &client, failed);
-      received = {message->frame, monotonic_now_ns()};
-      ++status_.received;
-      return true;
     }
+    refuse_malformed(client);
   }
   return false;
+}
+
+/// To the other clients, where the channel is open.
+bool SlcanServer::take_frame(Client& client, const CanFrame& frame) noexcept {
+  if (client.channel != Client::Channel::kOpen) {
+    (void)client.stream.stage(kRefused);
+    return false;
+  }
+  std::size_t failed = 0;
+  (void)deliver(frame, &client, failed);
+  (void)client.stream.stage(frame.extended ? "Z\r" : "z\r");
+  return true;
+}
+
+/// Lines that were none, before whatever came after them.
+void SlcanServer::refuse_malformed(Client& client) noexcept {
+  for (; client.malformed_answered < client.stream.malformed(); ++client.malformed_answered) {
+    (void)client.stream.stage(kRefused);
+  }
 }
 
 /// Waits for the sockets and fills the buffers; false where nothing came.
@@ -121,38 +138,60 @@ bool SlcanServer::poll(std::int64_t at_most_ns) noexcept {
 
 std::size_t SlcanServer::deliver(const CanFrame& frame, const Client* except,
                                  std::size_t& failed) noexcept {
-  std::array<char, kSlcanMaxFrame> line{};
-  const std::size_t size = slcan_encode(frame, line);
+  std::array<char, kSlcanMaxFrame> plain{};
+  std::array<char, kSlcanMaxStamped> stamped{};
+  const std::size_t size = slcan_encode(frame, plain);
   std::size_t taken = 0;
   for (Client& client : clients_) {
-    if (&client != except && client.channel_open && client.stream.is_open()) {
-      ++(client.stream.stage({line.data(), size}) ? taken : failed);
+    if (&client == except || !client.hears()) continue;
+    std::string_view line(plain.data(), size);
+    if (client.stamps) {
+      const auto time_ms = monotonic_now_ns() / kNanosecondsPerMillisecond;
+      line = {stamped.data(), slcan_encode_stamped(frame, time_ms, stamped)};
     }
+    const bool fits = client.stream.stage(line);
+    ++(fits ? taken : failed);
+    client.lost += fits ? 0 : 1;
   }
   return taken;
 }
 
-void SlcanServer::obey(Client& client, std::string_view command) noexcept {
-  std::string_view answer = "\r";
+std::string_view SlcanServer::obey(Client& client, std::string_view command) noexcept {
+  using Channel = Client::Channel;
+  const bool open = client.channel != Channel::kClosed;
+  const bool bare = command.size() == 1;
   switch (command.front()) {
     case 'O':
     case 'L':
-      client.channel_open = true;
-      break;
+      if (open || !bare) return kRefused;
+      client.channel = command.front() == 'O' ? Channel::kOpen : Channel::kListening;
+      return kAccepted;
     case 'C':
-      client.channel_open = false;
-      break;
+      if (!open || !bare) return kRefused;
+      client.channel = Channel::kClosed;
+      return kAccepted;
+    case 'S':
+      return open || command.size() != 2 || command[1] < '0' || command[1] > '8' ? kRefused
+                                                                                 : kAccepted;
+    case 's':
+      return open || command.size() != 5 ? kRefused : kAccepted;
+    case 'Z':
+      if (open || (command != "Z0" && command != "Z1")) return kRefused;
+      client.stamps = command == "Z1";
+      return kAccepted;
     case 'V':
-      answer = "V1013\r";
-      break;
+      return bare ? "V1013\r" : kRefused;
     case 'N':
-      answer = "NTENO\r";
-      break;
-    case 'F':
-      answer = "F00\r";
-      break;
+      return bare ? "NTENO\r" : kRefused;
+    case 'F': {
+      if (!open || !bare) return kRefused;
+      const std::uint64_t lost = client.lost + client.stream.dropped();
+      const bool overrun = lost > client.lost_told;
+      client.lost_told = lost;
+      return overrun ? "F08\r" : "F00\r";
+    }
   }
-  (void)client.stream.stage(answer);
+  return kRefused;
 }
 
 void SlcanServer::accept_client() noexcept {
@@ -165,7 +204,10 @@ void SlcanServer::accept_client() noexcept {
       const int on = 1;
       ::setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
       client.stream.adopt(descriptor);
-      client.channel_open = false;
+      client.channel = Client::Channel::kClosed;
+      client.stamps = false;
+      client.malformed_answered = client.stream.malformed();
+      client.lost_told = client.lost + client.stream.dropped();
       return;
     }
   }

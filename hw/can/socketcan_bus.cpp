@@ -12,18 +12,19 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 
 #include "hw/can/monotonic_clock.h"
 #include "hw/can/poll_wait.h"
 #include "hw/can/socketcan_errors.h"
+#include "hw/can/socketcan_link.h"
 #include "shared/base/error.h"
 
 namespace tenon::hw {
 namespace {
 
-[[noreturn]] void refuse(int socket, const std::string& interface, const std::string& what) {
+[[noreturn]] void refuse(const std::string& interface, const std::string& what) {
   const std::string reason = std::strerror(errno);
-  if (socket >= 0) ::close(socket);
   throw InputError("CAN bus socketcan:" + interface + ": " + what + " (" + reason + ")");
 }
 
@@ -45,10 +46,10 @@ CanFrame from_kernel(const can_frame& raw) {
   return frame;
 }
 
-/// What the kernel tells beside a frame.
+/// What the kernel tells beside a frame, where it does.
 struct Ancillary {
-  std::int64_t time_ns = 0;  ///< 0 where it gives none
-  std::uint32_t drops = 0;
+  std::optional<std::int64_t> time_ns;
+  std::optional<std::uint32_t> drops;
 };
 
 Ancillary read_ancillary(msghdr& message) {
@@ -62,7 +63,7 @@ Ancillary read_ancillary(msghdr& message) {
       ancillary.time_ns =
           monotonic_of_realtime_ns(std::int64_t{stamp.tv_sec} * 1'000'000'000 + stamp.tv_nsec);
     } else if (header->cmsg_type == SO_RXQ_OVFL) {
-      std::memcpy(&ancillary.drops, CMSG_DATA(header), sizeof(ancillary.drops));
+      std::memcpy(&ancillary.drops.emplace(), CMSG_DATA(header), sizeof(std::uint32_t));
     }
   }
   return ancillary;
@@ -70,51 +71,44 @@ Ancillary read_ancillary(msghdr& message) {
 
 }  // namespace
 
-SocketcanBus::SocketcanBus(const std::string& interface) {
-  if (interface.empty() || interface.size() >= IFNAMSIZ) {
-    throw InputError("CAN bus socketcan:" + interface + ": an interface has a name of 1.." +
-                     std::to_string(IFNAMSIZ - 1) + " characters, such as can0");
-  }
-  const int descriptor = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
-  if (descriptor < 0) {
-    refuse(descriptor, interface,
+SocketcanBus::SocketcanBus(const std::string& interface, std::uint32_t bitrate_bps,
+                           std::uint32_t burst_frames)
+    : interface_(interface),
+      socket_(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)) {
+  if (socket_.get() < 0) {
+    refuse(interface,
            "this kernel has no CAN sockets; load can-raw (modprobe can-raw), or use slcan:");
   }
-  ifreq request{};
-  std::copy(interface.begin(), interface.end(), request.ifr_name);
-  if (::ioctl(descriptor, SIOCGIFINDEX, &request) != 0) {
-    refuse(descriptor, interface, "no such interface; list them with 'ip link show type can'");
-  }
-  sockaddr_can address{};
-  address.can_family = AF_CAN;
-  address.can_ifindex = request.ifr_ifindex;
-  if (::ioctl(descriptor, SIOCGIFFLAGS, &request) != 0 || (request.ifr_flags & IFF_UP) == 0) {
-    errno = ENETDOWN;
-    refuse(descriptor, interface,
-           "the interface is down; 'ip link set " + interface + " up type can bitrate 1000000'");
-  }
+  const SocketcanLink link = read_link(interface);
+  check_link(link, interface, bitrate_bps, burst_frames);
+  index_ = link.index;
+  configure_socket();
+}
+
+void SocketcanBus::configure_socket() {
   const can_err_mask_t errors = CAN_ERR_MASK;
   const int on = 1;
   const int off = 0;
-  if (::setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof(errors)) != 0 ||
-      ::setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof(off)) != 0 ||
-      ::setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on)) != 0 ||
-      ::setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on)) != 0) {
-    refuse(descriptor, interface, "cannot set the socket's options");
+  const int socket = socket_.get();
+  if (::setsockopt(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof(errors)) != 0 ||
+      ::setsockopt(socket, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof(off)) != 0 ||
+      ::setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on)) != 0 ||
+      ::setsockopt(socket, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on)) != 0) {
+    refuse(interface_, "cannot set the socket's options");
   }
-  if (::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
-    refuse(descriptor, interface, "cannot bind");
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = index_;
+  if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
+    refuse(interface_, "cannot bind");
   }
-  socket_ = descriptor;
 }
-
-SocketcanBus::~SocketcanBus() { ::close(socket_); }
 
 SendResult SocketcanBus::send(const CanFrame& frame) noexcept {
   const can_frame raw = to_kernel(frame);
-  if (::write(socket_, &raw, sizeof(raw)) == static_cast<ssize_t>(sizeof(raw))) {
+  if (::write(socket_.get(), &raw, sizeof(raw)) == static_cast<ssize_t>(sizeof(raw))) {
     ++status_.sent;
-    status_.up = true;
+    if (!status_.up) take_up();
     return SendResult::kSent;
   }
   ++status_.send_failures;
@@ -136,9 +130,13 @@ bool SocketcanBus::receive(ReceivedFrame& received) noexcept {
     message.msg_iovlen = 1;
     message.msg_control = control.data();
     message.msg_controllen = control.size();
-    const ssize_t size = ::recvmsg(socket_, &message, 0);
+    const ssize_t size = ::recvmsg(socket_.get(), &message, 0);
     if (size < 0) {
-      if (errno == ENETDOWN || errno == ENODEV) status_.up = false;
+      if (errno == ENETDOWN || errno == ENODEV) {
+        status_.up = false;
+      } else if (!status_.up && interface_is_up()) {
+        take_up();
+      }
       return false;
     }
     if (size != static_cast<ssize_t>(sizeof(raw))) {
@@ -146,24 +144,42 @@ bool SocketcanBus::receive(ReceivedFrame& received) noexcept {
       continue;
     }
     const Ancillary ancillary = read_ancillary(message);
-    status_.overruns += ancillary.drops - kernel_drops_;
-    kernel_drops_ = ancillary.drops;
-    status_.up = true;
+    if (ancillary.drops) {
+      status_.overruns += *ancillary.drops - kernel_drops_;
+      kernel_drops_ = *ancillary.drops;
+    }
     if ((raw.can_id & CAN_ERR_FLAG) != 0) {
       std::array<std::uint8_t, 8> data{};
       std::copy(std::begin(raw.data), std::end(raw.data), data.begin());
       apply_error_frame(raw.can_id & CAN_ERR_MASK, data, status_);
       continue;
     }
-    received = {from_kernel(raw), ancillary.time_ns != 0 ? ancillary.time_ns : monotonic_now_ns()};
+    // Two clocks are read one after the other to convert a time: it must not step back.
+    newest_ns_ = std::max(newest_ns_, ancillary.time_ns.value_or(monotonic_now_ns()));
+    received = {from_kernel(raw), newest_ns_};
     ++status_.received;
     return true;
   }
 }
 
+/// Whether the very interface that the socket is bound to is up; a new one of its name is not it.
+bool SocketcanBus::interface_is_up() const noexcept {
+  ifreq request{};
+  std::copy(interface_.begin(), interface_.end(), request.ifr_name);
+  return ::ioctl(socket_.get(), SIOCGIFINDEX, &request) == 0 && request.ifr_ifindex == index_ &&
+         ::ioctl(socket_.get(), SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
+}
+
+/// A controller that was taken down and up starts anew.
+void SocketcanBus::take_up() noexcept {
+  status_.up = true;
+  status_.bus_off = false;
+  status_.error_passive = false;
+}
+
 void SocketcanBus::wait(std::int64_t at_most_ns) noexcept {
   if (at_most_ns > 0) {
-    std::array<pollfd, 1> wanted{{{socket_, POLLIN, 0}}};
+    std::array<pollfd, 1> wanted{{{socket_.get(), POLLIN, 0}}};
     (void)poll_wait(wanted, at_most_ns);
   }
 }

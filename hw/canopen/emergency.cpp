@@ -21,37 +21,36 @@ const char* emergency_text(std::uint32_t code) {
     case tenon::canopen::kEmergencyFollowingError:
       return "following error";
   }
-  // Classes by the high byte (CiA 301, table 26).
-  switch (code >> 8) {
-    case 0x10:
-      return "generic error";
-    case 0x20:
-    case 0x21:
-    case 0x22:
-    case 0x23:
-      return "over-current";
-    case 0x30:
-    case 0x31:
-    case 0x32:
-    case 0x33:
-      return "voltage";
-    case 0x40:
-    case 0x41:
-    case 0x42:
-    case 0x43:
-      return "temperature";
-    case 0x50:
-      return "device hardware";
-    case 0x73:
+  // Of drives (CiA 402-2, error codes).
+  switch (code) {
+    case 0x2310:
+      return "continuous over-current";
+    case 0x2320:
+      return "short circuit or earth leakage at the motor";
+    case 0x2330:
+      return "earth leakage at the motor";
+    case 0x2340:
+      return "short circuit at the motor";
+    case 0x3210:
+      return "DC link over-voltage";
+    case 0x3220:
+      return "DC link under-voltage";
+    case 0x4210:
+      return "device too hot";
+    case 0x4310:
+      return "drive too hot";
+    case 0x6320:
+      return "parameter error";
+    case 0x7121:
+      return "motor blocked";
+    case 0x7300:
       return "sensor";
-    case 0x81:
-      return "communication";
-    case 0x84:
-      return "velocity control";
-    case 0x86:
-      return "position control";
+    case 0x7305:
+      return "incremental sensor 1";
+    case 0x8612:
+      return "reference limit";
   }
-  return "error of the device";
+  return nullptr;
 }
 
 }  // namespace tenon::hw::canopen

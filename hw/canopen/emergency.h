@@ -50,7 +50,7 @@ struct Emergency {
          emergency.code == tenon::canopen::kEmergencyErrorPassive;
 }
 
-/// "following error" for 8611h; the class of the error where the code is not known.
+/// "following error" for 8611h; nullptr where neither CiA 301 nor CiA 402 gives the code a meaning.
 [[nodiscard]] const char* emergency_text(std::uint32_t code);
 
 }  // namespace tenon::hw::canopen

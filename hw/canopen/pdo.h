@@ -14,6 +14,8 @@
 namespace tenon::hw::canopen {
 
 inline constexpr std::uint8_t kEverySync = 1;  ///< transmission type
+inline constexpr std::uint8_t kAtOnce = 255;   ///< acts when it arrives
+inline constexpr std::uint16_t kDummyI32 = 4;  ///< maps to nothing: skips four bytes of an RPDO
 
 struct PdoEntry {
   std::uint16_t index = 0;

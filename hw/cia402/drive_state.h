@@ -17,6 +17,9 @@
 
 namespace tenon::hw::cia402 {
 
+/// Statusword bit 12 in modes 7 and 8: the drive takes up targets.
+inline constexpr std::uint16_t kStatusFollowsTargets = 0x1000;
+
 enum class DriveState : std::uint8_t {
   kUnknown = 0,  ///< no word of the table: treated as not ready
   kNotReadyToSwitchOn = 1,

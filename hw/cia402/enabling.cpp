@@ -61,4 +61,17 @@ std::uint16_t next_controlword(DriveState state, ArmRequest request, std::uint16
   return kCommandDisableVoltage;
 }
 
+bool has_followed(DriveState state, ArmRequest request) {
+  switch (request) {
+    case ArmRequest::kEnabled:
+      return state == DriveState::kOperationEnabled;
+    case ArmRequest::kQuickStop:
+      return state == DriveState::kQuickStopActive || state == DriveState::kSwitchOnDisabled ||
+             state == DriveState::kFault;
+    case ArmRequest::kDisabled:
+      return state == DriveState::kSwitchOnDisabled || state == DriveState::kFault;
+  }
+  return false;
+}
+
 }  // namespace tenon::hw::cia402

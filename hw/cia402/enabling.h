@@ -26,4 +26,7 @@ namespace tenon::hw::cia402 {
 [[nodiscard]] std::uint16_t next_controlword(DriveState state, ArmRequest request,
                                              std::uint16_t previous, bool interpolated);
 
+/// Whether a drive is where the request ends, so that nothing is left to be commanded.
+[[nodiscard]] bool has_followed(DriveState state, ArmRequest request);
+
 }  // namespace tenon::hw::cia402

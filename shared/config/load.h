@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shared/cell/cell.h"
+#include "shared/experiment/world_ranges.h"
 #include "shared/plan/plan.h"
 #include "shared/task/task.h"
 
@@ -18,11 +19,14 @@ namespace tenon {
 /// is refused by check_starts() in the planner.
 [[nodiscard]] Task load_task(const std::filesystem::path& file);
 
-/// hw/robots/NAME/robot.yaml.
+/// hw/robots/NAME/robot.yaml and the URDF that it names.
 [[nodiscard]] Robot load_robot(const std::filesystem::path& file);
 
 /// hw/cells/NAME.yaml. The robot is named relative to the cell's file.
 [[nodiscard]] Cell load_cell(const std::filesystem::path& file);
+
+/// sim/experiments/*.yaml.
+[[nodiscard]] WorldRanges load_experiment(const std::filesystem::path& file);
 
 /// A .tnp file.
 [[nodiscard]] Plan load_plan(const std::filesystem::path& file);

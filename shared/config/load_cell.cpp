@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/yaml_value.h"
@@ -10,10 +13,15 @@ Cell load_cell(const std::filesystem::path& file) {
   using config::Value;
 
   const Map map(Value::parse(file, config::read_file(file)),
-                {"name", "robot", "task_in_base", "tool_in_flange", "sensor_in_flange", "payload",
-                 "contact_stiffness_Npm", "faults"});
+                {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange",
+                 "sensor_in_flange", "payload", "contact_stiffness_Npm", "faults"});
   Cell cell;
   cell.name = map.at("name").name();
+  if (const auto up = map.find("up_in_base")) {
+    cell.up_B = up->vector(config::within(1.0));
+    if (std::abs(cell.up_B.norm() - 1.0) > 1e-6) up->refuse("must have length 1");
+    cell.up_B.normalize();
+  }
   cell.X_BT = map.at("task_in_base").pose();
   cell.X_FP = map.at("tool_in_flange").pose();
   cell.X_FS = map.at("sensor_in_flange").pose();
@@ -21,9 +29,12 @@ Cell load_cell(const std::filesystem::path& file) {
   const Map payload(map.at("payload"), {"mass_kg", "com_m"});
   cell.payload_mass_kg = payload.number("mass_kg", {0.0, 100.0});
   cell.payload_com_m = payload.at("com_m").vector(config::within(1.0));
-  cell.contact_stiffness_Npm = map.number("contact_stiffness_Npm", {1e2, 1e8});
 
   cell.robot = load_robot((file.parent_path() / map.at("robot").text()).lexically_normal());
+
+  // The arm is one part of the series, which is softer than each of its parts.
+  cell.contact_stiffness_Npm =
+      map.number("contact_stiffness_Npm", {1e2, std::min(1e8, cell.robot.stiffness_Npm)});
 
   // Beyond its range the sensor would never show the fault.
   const Map faults(map.at("faults"), {"force_N", "torque_Nm"});

@@ -1,9 +1,14 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "shared/config/files.h"
 #include "shared/config/load.h"
+#include "shared/config/urdf_chain.h"
 #include "shared/config/yaml_value.h"
 #include "shared/ports/arm.h"
 
@@ -21,28 +26,15 @@ constexpr double kCountsMax = 2147483647.0;  // the drives' positions are signed
 /// The names of a joint's keys carry the unit of its kind.
 struct JointKeys {
   const char* counts_per_unit;
-  const char* lower;
-  const char* upper;
-  const char* speed_max;
   const char* acceleration_max;
-  const char* effort_max;
   const char* rated_effort;
   const char* following_error_max;
+  const char* stiffness;
 };
-constexpr JointKeys kPrismaticKeys = {
-    "counts_per_m",          "lower_m",      "upper_m",        "speed_max_mps",
-    "acceleration_max_mps2", "effort_max_N", "rated_effort_N", "following_error_max_m"};
-constexpr JointKeys kRevoluteKeys = {
-    "counts_per_rad",          "lower_rad",     "upper_rad",       "speed_max_radps",
-    "acceleration_max_radps2", "effort_max_Nm", "rated_effort_Nm", "following_error_max_rad"};
-
-// The names of the other keys depend on it.
-Joint::Kind read_kind(const Value& joint) {
-  const auto kind = joint.peek("kind");
-  if (!kind) joint.refuse("the required key kind is missing");
-  return kind->choice({"prismatic", "revolute"}) == 0 ? Joint::Kind::kPrismatic
-                                                      : Joint::Kind::kRevolute;
-}
+constexpr JointKeys kPrismaticKeys = {"counts_per_m", "acceleration_max_mps2", "rated_effort_N",
+                                      "following_error_max_m", "stiffness_Npm"};
+constexpr JointKeys kRevoluteKeys = {"counts_per_rad", "acceleration_max_radps2", "rated_effort_Nm",
+                                     "following_error_max_rad", "stiffness_Nmpr"};
 
 std::uint8_t read_node(const Value& value, std::set<std::int64_t>& taken) {
   const std::int64_t node = value.integer(1, kNodeMax);
@@ -50,16 +42,7 @@ std::uint8_t read_node(const Value& value, std::set<std::int64_t>& taken) {
   return static_cast<std::uint8_t>(node);
 }
 
-Vector3 read_axis(const Value& value) {
-  const Vector3 axis = value.vector(within(1.0));
-  if (std::abs(axis.norm() - 1.0) > 1e-6) value.refuse("must have length 1");
-  return axis.normalized();
-}
-
-void read_range(const Map& map, const JointKeys& keys, Joint& joint) {
-  constexpr double kTravelMax = 100.0;
-  joint.lower = map.number(keys.lower, within(kTravelMax));
-  joint.upper = map.number(keys.upper, {joint.lower, kTravelMax, true});
+void read_counts(const Map& map, const JointKeys& keys, Joint& joint) {
   const Value counts = map.at(keys.counts_per_unit);
   joint.counts_per_unit = counts.number(within(1e9));
   if (joint.counts_per_unit == 0.0) counts.refuse_value("other than 0");
@@ -71,28 +54,39 @@ void read_range(const Map& map, const JointKeys& keys, Joint& joint) {
   }
 }
 
-Joint read_joint(const Value& value, std::set<std::int64_t>& nodes) {
-  Joint joint;
-  joint.kind = read_kind(value);
+/// What drive and bus add to a joint of the URDF.
+void read_drive(const Value& value, std::set<std::int64_t>& nodes, Joint& joint) {
   const JointKeys& keys = joint.kind == Joint::Kind::kPrismatic ? kPrismaticKeys : kRevoluteKeys;
-  const Map map(
-      value, {"name", "kind", "origin", "axis", "node", "mode", "zero_counts", "moving_mass_kg",
-              keys.counts_per_unit, keys.lower, keys.upper, keys.speed_max, keys.acceleration_max,
-              keys.effort_max, keys.rated_effort, keys.following_error_max});
-  joint.name = map.at("name").name();
-  if (const auto origin = map.find("origin")) joint.origin = origin->pose();
-  joint.axis = read_axis(map.at("axis"));
+  const Map map(value,
+                {"name", "node", "mode", "zero_counts", keys.counts_per_unit, keys.acceleration_max,
+                 keys.rated_effort, keys.following_error_max, keys.stiffness});
   joint.node = read_node(map.at("node"), nodes);
   joint.mode = map.at("mode").choice({"7", "8"}) == 0 ? Joint::Mode::kInterpolatedPosition
                                                       : Joint::Mode::kCyclicSynchronousPosition;
-  read_range(map, keys, joint);
-  joint.speed_max = map.number(keys.speed_max, positive_to(100.0));
+  read_counts(map, keys, joint);
   joint.acceleration_max = map.number(keys.acceleration_max, positive_to(1e4));
-  joint.effort_max = map.number(keys.effort_max, positive_to(1e5));
   joint.rated_effort = map.number(keys.rated_effort, positive_to(1e5));
   joint.following_error_max = map.number(keys.following_error_max, positive_to(1.0));
-  joint.link.mass_kg = map.number("moving_mass_kg", positive_to(1e3));
-  return joint;
+  joint.stiffness = map.number(keys.stiffness, positive_to(1e9));
+}
+
+/// Every joint of the URDF once, in any order; the URDF's order is the chain's.
+void read_joints(const Value& value, const std::string& urdf, std::set<std::int64_t>& nodes,
+                 std::vector<Joint>& joints) {
+  std::set<std::string> read;
+  for (const Value& entry : value.list(1, kMaxJoints)) {
+    // The other keys depend on the joint that it names.
+    const auto name = entry.peek("name");
+    if (!name) entry.refuse("the required key name is missing");
+    const auto joint = std::find_if(joints.begin(), joints.end(),
+                                    [&](const Joint& each) { return each.name == name->text(); });
+    if (joint == joints.end()) name->refuse_value("a revolute or prismatic joint of " + urdf);
+    if (!read.insert(joint->name).second) name->refuse_value("listed once");
+    read_drive(entry, nodes, *joint);
+  }
+  for (const Joint& joint : joints) {
+    if (!read.contains(joint.name)) value.refuse("lacks joint " + joint.name + " of " + urdf);
+  }
 }
 
 ForceTorqueSensor read_sensor(const Value& value, std::set<std::int64_t>& nodes) {
@@ -113,8 +107,8 @@ ForceTorqueSensor read_sensor(const Value& value, std::set<std::int64_t>& nodes)
 }
 
 void read_bus(const Value& value, std::set<std::int64_t>& nodes, Robot& robot) {
-  const Map map(value,
-                {"bitrate_bps", "cycle_us", "heartbeat_ms", "heartbeat_timeout_ms", "master_node"});
+  const Map map(value, {"bitrate_bps", "cycle_us", "heartbeat_ms", "heartbeat_timeout_ms",
+                        "master_node", "targets_per_frame"});
   // The bit rates of CiA 301.
   constexpr std::array<std::uint32_t, 7> kBitrates_bps = {20'000,  50'000,  125'000,  250'000,
                                                           500'000, 800'000, 1'000'000};
@@ -129,20 +123,24 @@ void read_bus(const Value& value, std::set<std::int64_t>& nodes, Robot& robot) {
   robot.heartbeat_timeout_ms = static_cast<std::uint32_t>(
       map.at("heartbeat_timeout_ms").integer(std::int64_t{robot.heartbeat_ms} + 1, 65'535));
   robot.master_node = read_node(map.at("master_node"), nodes);
+  if (const auto targets = map.find("targets_per_frame")) {
+    robot.targets_per_frame = static_cast<int>(targets->integer(1, 2));
+  }
 }
 
 }  // namespace
 
 Robot load_robot(const std::filesystem::path& file) {
   const Map map(Value::parse(file, config::read_file(file)),
-                {"name", "bus", "arm", "joints", "flange", "sensor"});
+                {"name", "urdf", "bus", "arm", "joints", "sensor"});
   Robot robot;
   robot.name = map.at("name").name();
+  const std::string urdf = map.at("urdf").text();
+  config::UrdfChain chain = config::read_urdf((file.parent_path() / urdf).lexically_normal());
+  robot.joints = std::move(chain.joints);
+  robot.flange = chain.flange;
   std::set<std::int64_t> nodes;
-  for (const Value& joint : map.at("joints").list(1, kMaxJoints)) {
-    robot.joints.push_back(read_joint(joint, nodes));
-  }
-  if (const auto flange = map.find("flange")) robot.flange = flange->pose();
+  read_joints(map.at("joints"), urdf, nodes, robot.joints);
   robot.sensor = read_sensor(map.at("sensor"), nodes);
   read_bus(map.at("bus"), nodes, robot);
 

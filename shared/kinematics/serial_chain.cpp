@@ -1,7 +1,7 @@
 #include "shared/kinematics/serial_chain.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -18,6 +18,8 @@ constexpr double kDamping = 1e-3;
 constexpr double kDampingFloor = 1e-18;
 // A unit motion counts as possible where the joints reproduce it this well.
 constexpr double kFreeAxisError = 1e-6;
+// Squared singular values below this share of the largest are rounding.
+constexpr double kNoMotion = 1e-12;
 
 bool finite(const Pose& pose) {
   return pose.position_m.allFinite() && pose.orientation.coeffs().allFinite();
@@ -128,12 +130,19 @@ SerialChain::Inverse SerialChain::inverse(const Pose& flange_goal, const JointVe
 }
 
 std::uint8_t SerialChain::free_axes(const JointVector& position) const {
+  using Square = Eigen::Matrix<double, 6, 6>;
   const Jacobian J = jacobian(position);
-  const Eigen::CompleteOrthogonalDecomposition<Jacobian> decomposition(J);
+  const Square squared = J * J.transpose();
+  // Its eigenvectors with a value span all twists that the joints can make.
+  const Eigen::SelfAdjointEigenSolver<Square> solver(squared);
+  Square possible = Square::Zero();
+  for (int i = 0; i < 6; ++i) {
+    if (solver.eigenvalues()[i] <= kNoMotion * solver.eigenvalues()[5]) continue;
+    possible += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
+  }
   std::uint8_t axes = 0;
   for (int axis = 0; axis < 6; ++axis) {
-    const Vector6 unit = Vector6::Unit(axis);
-    const Vector6 left = J * decomposition.solve(unit) - unit;
+    const Vector6 left = possible.col(axis) - Vector6::Unit(axis);
     if (left.norm() < kFreeAxisError) axes |= static_cast<std::uint8_t>(1U << axis);
   }
   return axes;

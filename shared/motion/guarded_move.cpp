@@ -7,9 +7,6 @@
 namespace tenon {
 namespace {
 
-// While a bit is being confirmed the tool presses with this multiple of the on-threshold: a real
-// contact answers with that force whatever the impact left, and nothing else does.
-constexpr double kProbeOverOn = 1.5;
 // At rest: slower than this over the whole window. A window this long sees 0.2 mm/s through encoder
 // steps of a micrometre.
 constexpr double kRestSpeed_mps = 0.2e-3;
@@ -132,6 +129,15 @@ void GuardedMove::plan_path(std::int64_t time_ns, double from) {
   profile_from_ = from;
 }
 
+double GuardedMove::path_at(const Pose& pose) const {
+  if (length_ <= 0.0) return 0.0;
+  const Vector6 off = displacement_between(rest_, pose);
+  const bool turn_only = displacement_.head<3>().norm() <= kNoMotion;
+  return (turn_only ? displacement_.tail<3>().dot(off.tail<3>())
+                    : displacement_.head<3>().dot(off.head<3>())) /
+         length_;
+}
+
 void GuardedMove::move(const Input& input) {
   const ContactSignature now = detector_.signature();
   const auto gained = static_cast<std::uint16_t>(now.bits & ~initial_.bits);
@@ -189,6 +195,9 @@ void GuardedMove::probe(const Input& input) {
   }
   if (input.wrench_fresh && watched(detector_.candidates()).bits == 0) {
     phase_ = Phase::kMoving;
+    // The tool ran on while the command stood. From anywhere else the difference would stay, since
+    // the compliance takes D / K to close it.
+    path_ = std::clamp(path_at(input.pose), 0.0, length_);
     plan_path(input.time_ns, path_);
     setpoint_.pose = displaced(rest_, length_ > 0.0 ? Vector6(displacement_ * (path_ / length_))
                                                     : Vector6(Vector6::Zero()));

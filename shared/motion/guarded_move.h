@@ -91,6 +91,8 @@ class GuardedMove {
   void enter_probing(const Input& input);
   void enter_settling(const Input& input, Outcome outcome);
   void move(const Input& input);
+  /// How far along the path a pose is, in path units; the part off the path does not count.
+  [[nodiscard]] double path_at(const Pose& pose) const;
   void probe(const Input& input);
   void settle(const Input& input);
   [[nodiscard]] Pose clamped(const Pose& setpoint, const Pose& pose, bool& active) const;

@@ -38,6 +38,10 @@ struct ContactThresholds {
   friend bool operator==(const ContactThresholds&, const ContactThresholds&) = default;
 };
 
+/// While a bit is being confirmed the tool presses with this multiple of the on-threshold: a real
+/// contact answers with that force whatever the impact left, and nothing else does.
+inline constexpr double kProbeOverOn = 1.5;
+
 /// Limits of the command along the straight path of a move.
 struct SpeedLimits {
   double approach_mps = 0.10;

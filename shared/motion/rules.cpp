@@ -16,9 +16,9 @@ std::optional<std::string> broken_rule(const ContactThresholds& t, double force_
     return format("0 < torque_off < torque_keep < torque_on does not hold: %g, %g, %g Nm",
                   t.torque_off_Nm, t.torque_keep_Nm, t.torque_on_Nm);
   }
-  if (!(1.5 * t.force_on_N <= force_limit_N)) {
-    return format("force_on = %g N must be at most force_limit / 1.5 = %g N", t.force_on_N,
-                  force_limit_N / 1.5);
+  if (!(kProbeOverOn * t.force_on_N <= force_limit_N)) {
+    return format("force_on = %g N must be at most force_limit / %g = %g N", t.force_on_N,
+                  kProbeOverOn, force_limit_N / kProbeOverOn);
   }
   // Contacts that are held brace each other by friction and so settle above the keep force.
   const double mu = conditions.friction_max;

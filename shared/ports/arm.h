@@ -43,6 +43,7 @@ enum class ArmFaultKind : std::uint8_t {
   kSensorInvalid = 9,    ///< saturated, torn or self-reported fault
   kBusDown = 10,
   kBusOff = 11,
+  kOtherMaster = 12,  ///< another master runs on the bus; code is the COB-ID that betrayed it
 };
 
 /// Plain data, so that real-time code can carry it. describe() in hw gives the line for people.

@@ -1,5 +1,6 @@
 #pragma once
-// The objects of a CANopen slave: typed integers and constant texts with rights, ranges and a hook.
+// The objects of a CANopen slave: typed integers and texts with name, rights, range, default and
+// hooks. It is the one table of a device: SDO, PDO and the EDS file all come from it.
 //
 // It knows neither frames nor time. One thread; it owns its entries, whose addresses are stable.
 
@@ -24,12 +25,16 @@ enum class Access : std::uint8_t { kReadOnly, kReadWrite, kWriteOnly };
 /// Which PDOs may carry the object.
 enum class Mappable : std::uint8_t { kNo, kReceive, kTransmit };
 
+/// What an index holds: one value, or sub-indices alike or unlike, counted by sub-index 0.
+enum class Structure : std::uint8_t { kVariable, kArray, kRecord };
+
 /// Bytes on the wire; 0 for a text, whose length is its own.
 [[nodiscard]] std::size_t size_bytes(DataType type);
 [[nodiscard]] std::int64_t lowest(DataType type);
 [[nodiscard]] std::int64_t highest(DataType type);
 
 struct ObjectEntry {
+  std::string name = {};
   DataType type = DataType::kU8;
   Access access = Access::kReadOnly;
   Mappable mappable = Mappable::kNo;
@@ -37,22 +42,43 @@ struct ObjectEntry {
   std::int64_t low = std::numeric_limits<std::int64_t>::min();   ///< narrowed to the type by add()
   std::int64_t high = std::numeric_limits<std::int64_t>::max();  ///< likewise
   std::string text = {};
+  std::size_t text_bytes_max = 0;  ///< of a text that may be written
+  bool contains_node = false;      ///< the default is a COB-ID that ends in the node's number
+  bool is_command = false;         ///< a write acts, and leaves the value as it is
+  /// Asked before the value is read from the bus; an SDO abort code refuses it.
+  std::function<std::uint32_t()> on_read = {};
   /// Sees a value in range before it is stored; an SDO abort code refuses it, 0 lets it in.
   std::function<std::uint32_t(std::int64_t)> on_write = {};
-  std::int64_t power_on_value = 0;  ///< set by add()
+  // What reset() brings back, and what restore_defaults() brings back for it; set by add().
+  std::int64_t power_on_value = 0;
+  std::int64_t factory_value = 0;
+  std::string power_on_text = {};
+  std::string factory_text = {};
 };
 
 class ObjectDictionary {
  public:
-  void add(ObjectId id, ObjectEntry entry);
+  struct Description {
+    std::string name;
+    Structure structure = Structure::kVariable;
+  };
+
+  /// @return the entry, for the device's own access without a search
+  ObjectEntry& add(ObjectId id, ObjectEntry entry);
+  /// Names an index that has sub-indices. What is not described is a variable.
+  void describe(std::uint16_t index, Description description);
 
   [[nodiscard]] ObjectEntry* find(ObjectId id);
   [[nodiscard]] const ObjectEntry* find(ObjectId id) const;
   /// Why find() found nothing: no such object, or no such sub-index of it.
   [[nodiscard]] std::uint32_t why_missing(ObjectId id) const;
+  /// In the order of their identifiers.
+  [[nodiscard]] const std::map<ObjectId, ObjectEntry>& entries() const { return entries_; }
+  [[nodiscard]] const Description* description(std::uint16_t index) const;
 
   /// A write from the bus. @return 0, or the SDO abort code of the refusal
   [[nodiscard]] std::uint32_t write(ObjectId id, std::int64_t value);
+  [[nodiscard]] std::uint32_t write_text(ObjectId id, const std::string& text);
 
   /// The device's own access; the object must exist.
   [[nodiscard]] std::int64_t value(ObjectId id) const;
@@ -60,10 +86,21 @@ class ObjectDictionary {
 
   /// Back to the values of power-on, for indices low..high.
   void reset(std::uint16_t low_index, std::uint16_t high_index);
+  /// Settings (what may be read and written, process data excepted) as they are now survive a
+  /// reset (1010h).
+  void store_settings();
+  /// From the next reset on, the defaults (1011h).
+  void restore_defaults();
 
  private:
   std::map<ObjectId, ObjectEntry> entries_;
+  std::map<std::uint16_t, Description> descriptions_;
 };
+
+/// Within the bounds of its type.
+void set(ObjectEntry& entry, std::int64_t value);
+/// Before power-on: the default, and the value until then.
+void set_default(ObjectEntry& entry, std::int64_t value);
 
 /// Little-endian bytes of an entry's value or text.
 [[nodiscard]] std::vector<std::uint8_t> to_bytes(const ObjectEntry& entry);

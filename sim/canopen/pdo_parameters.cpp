@@ -1,20 +1,16 @@
 #include "sim/canopen/pdo_parameters.h"
 
+#include <string>
+#include <utility>
+
 #include "shared/canopen/constants.h"
 
 namespace tenon::sim {
 namespace {
 
-constexpr std::uint8_t kEntriesMax = 8;
 constexpr std::size_t kFrameBits = 64;
 constexpr std::uint32_t kExtended = 0x20000000;
 constexpr std::uint32_t kIdMask = 0x7FF;
-
-/// Identifiers that no PDO may take (CiA 301, table of restricted COB-IDs).
-bool restricted(std::uint32_t id) {
-  return id <= 0x07F || (id >= 0x101 && id <= 0x180) || (id >= 0x581 && id <= 0x5FF) ||
-         (id >= 0x601 && id <= 0x67F) || (id >= 0x6E0 && id <= 0x6FF) || id >= 0x701;
-}
 
 /// Objects 0002h to 0007h: bits that a receiver skips (CiA 301, 7.4.7.1).
 std::size_t dummy_bits(std::uint32_t index) {
@@ -35,6 +31,11 @@ std::size_t dummy_bits(std::uint32_t index) {
 
 }  // namespace
 
+bool is_restricted_cob_id(std::uint32_t id) {
+  return id <= 0x07F || (id >= 0x101 && id <= 0x180) || (id >= 0x581 && id <= 0x5FF) ||
+         (id >= 0x601 && id <= 0x67F) || (id >= 0x6E0 && id <= 0x6FF) || id >= 0x701;
+}
+
 PdoParameters::PdoParameters(ObjectDictionary& dictionary, PdoDirection direction,
                              std::uint8_t number, const PdoDefaults& defaults)
     : dictionary_(dictionary),
@@ -51,41 +52,62 @@ PdoParameters::PdoParameters(ObjectDictionary& dictionary, PdoDirection directio
 }
 
 void PdoParameters::add_communication(const PdoDefaults& defaults) {
-  dictionary_.add(object_id(communication_, 0), {.type = DataType::kU8, .value = 5});
-  dictionary_.add(object_id(communication_, 1),
-                  {.type = DataType::kU32,
-                   .access = Access::kReadWrite,
-                   .value = defaults.cob_id,
-                   .on_write = [this](std::int64_t value) { return check_cob_id(value); }});
-  dictionary_.add(object_id(communication_, 2),
-                  {.type = DataType::kU8,
-                   .access = Access::kReadWrite,
-                   .value = defaults.transmission_type,
-                   .on_write = [](std::int64_t value) {
-                     return value > 240 && value < 254 ? canopen::kAbortValue : 0;
-                   }});
-  dictionary_.add(
-      object_id(communication_, 3),
-      {.type = DataType::kU16, .access = Access::kReadWrite, .on_write = [this](std::int64_t) {
-         return valid() ? canopen::kAbortDeviceState : 0;
-       }});
-  dictionary_.add(object_id(communication_, 5),
-                  {.type = DataType::kU16, .access = Access::kReadWrite});
+  using enum DataType;
+  constexpr Access kReadWrite = Access::kReadWrite;
+  const bool sent = direction_ == PdoDirection::kTransmit;
+  const auto add = [this](std::uint8_t sub, ObjectEntry entry) {
+    return &dictionary_.add(object_id(communication_, sub), std::move(entry));
+  };
+  dictionary_.describe(
+      communication_,
+      {sent ? "TPDO communication parameter" : "RPDO communication parameter", Structure::kRecord});
+  add(0, {.name = "Highest sub-index supported", .value = sent ? 6 : 5});
+  cob_id_ = add(1, {.name = sent ? "COB-ID used by TPDO" : "COB-ID used by RPDO",
+                    .type = kU32,
+                    .access = kReadWrite,
+                    .value = defaults.cob_id,
+                    .contains_node = true,
+                    .on_write = [this](std::int64_t value) { return check_cob_id(value); }});
+  transmission_type_ = add(2, {.name = "Transmission type",
+                               .type = kU8,
+                               .access = kReadWrite,
+                               .value = defaults.transmission_type,
+                               .on_write = [](std::int64_t value) {
+                                 return value > 240 && value < 254 ? canopen::kAbortValue : 0;
+                               }});
+  inhibit_ = add(3, {.name = "Inhibit time",
+                     .type = kU16,
+                     .access = kReadWrite,
+                     .on_write = [this](std::int64_t) { return check_invalid(); }});
+  event_timer_ = add(5, {.name = "Event timer", .type = kU16, .access = kReadWrite});
+  if (!sent) return;
+  sync_start_ = add(6, {.name = "SYNC start value",
+                        .type = kU8,
+                        .access = kReadWrite,
+                        .high = 240,
+                        .on_write = [this](std::int64_t) { return check_invalid(); }});
 }
 
 void PdoParameters::add_mapping(const PdoDefaults& defaults) {
-  dictionary_.add(object_id(mapping_, 0),
-                  {.type = DataType::kU8,
-                   .access = Access::kReadWrite,
-                   .value = static_cast<std::int64_t>(defaults.mapping.size()),
-                   .on_write = [this](std::int64_t count) { return check_count(count); }});
+  dictionary_.describe(mapping_, {direction_ == PdoDirection::kTransmit ? "TPDO mapping parameter"
+                                                                        : "RPDO mapping parameter",
+                                  Structure::kRecord});
+  count_ =
+      &dictionary_.add(object_id(mapping_, 0),
+                       {.name = "Number of mapped application objects",
+                        .type = DataType::kU8,
+                        .access = Access::kReadWrite,
+                        .value = static_cast<std::int64_t>(defaults.mapping.size()),
+                        .on_write = [this](std::int64_t count) { return check_count(count); }});
   for (std::uint8_t sub = 1; sub <= kEntriesMax; ++sub) {
     const std::uint32_t entry = sub <= defaults.mapping.size() ? defaults.mapping[sub - 1U] : 0;
-    dictionary_.add(object_id(mapping_, sub),
-                    {.type = DataType::kU32,
-                     .access = Access::kReadWrite,
-                     .value = entry,
-                     .on_write = [this](std::int64_t value) { return check_entry(value); }});
+    entries_[sub - 1U] =
+        &dictionary_.add(object_id(mapping_, sub),
+                         {.name = "Application object " + std::to_string(sub),
+                          .type = DataType::kU32,
+                          .access = Access::kReadWrite,
+                          .value = entry,
+                          .on_write = [this](std::int64_t value) { return check_entry(value); }});
   }
 }
 
@@ -94,21 +116,23 @@ std::uint32_t PdoParameters::check_cob_id(std::int64_t value) const {
   const bool stays_valid = valid() && (wanted & canopen::kPdoInvalid) == 0;
   if (stays_valid && (wanted & kIdMask) != cob_id()) return canopen::kAbortDeviceState;
   if ((wanted & kExtended) != 0) return canopen::kAbortValue;
-  if ((wanted & canopen::kPdoInvalid) == 0 && restricted(wanted & ~canopen::kPdoNoRtr)) {
+  if ((wanted & canopen::kPdoInvalid) == 0 && is_restricted_cob_id(wanted & ~canopen::kPdoNoRtr)) {
     return canopen::kAbortValue;
   }
   return 0;
 }
 
+std::uint32_t PdoParameters::check_invalid() const {
+  return valid() ? canopen::kAbortDeviceState : 0;
+}
+
 std::uint32_t PdoParameters::check_count(std::int64_t count) const {
   if (valid()) return canopen::kAbortDeviceState;
-  if (count > kEntriesMax) return canopen::kAbortMappingTooLong;
+  if (count > static_cast<std::int64_t>(kEntriesMax)) return canopen::kAbortMappingTooLong;
   std::size_t bits = 0;
-  for (std::int64_t sub = 1; sub <= count; ++sub) {
-    const std::int64_t entry =
-        dictionary_.value(object_id(mapping_, static_cast<std::uint8_t>(sub)));
-    if (entry == 0) return canopen::kAbortNotMappable;
-    bits += static_cast<std::size_t>(entry & 0xFF);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    if (entries_[i]->value == 0) return canopen::kAbortNotMappable;
+    bits += static_cast<std::size_t>(entries_[i]->value & 0xFF);
   }
   return bits > kFrameBits ? canopen::kAbortMappingTooLong : 0;
 }
@@ -128,40 +152,36 @@ std::uint32_t PdoParameters::check_entry(std::int64_t mapping) const {
   return bits == 8 * size_bytes(entry->type) ? 0 : canopen::kAbortLength;
 }
 
-bool PdoParameters::valid() const {
-  return (dictionary_.value(object_id(communication_, 1)) & canopen::kPdoInvalid) == 0;
-}
+bool PdoParameters::valid() const { return (cob_id_->value & canopen::kPdoInvalid) == 0; }
+
+bool PdoParameters::remote_allowed() const { return (cob_id_->value & canopen::kPdoNoRtr) == 0; }
 
 std::uint32_t PdoParameters::cob_id() const {
-  return static_cast<std::uint32_t>(dictionary_.value(object_id(communication_, 1))) & kIdMask;
+  return static_cast<std::uint32_t>(cob_id_->value) & kIdMask;
 }
 
 std::uint8_t PdoParameters::transmission_type() const {
-  return static_cast<std::uint8_t>(dictionary_.value(object_id(communication_, 2)));
+  return static_cast<std::uint8_t>(transmission_type_->value);
 }
 
-std::int64_t PdoParameters::inhibit_ns() const {
-  return dictionary_.value(object_id(communication_, 3)) * 100'000;
+std::int64_t PdoParameters::inhibit_ns() const { return inhibit_->value * 100'000; }
+
+std::int64_t PdoParameters::event_timer_ns() const { return event_timer_->value * 1'000'000; }
+
+std::uint8_t PdoParameters::sync_start() const {
+  return sync_start_ == nullptr ? 0 : static_cast<std::uint8_t>(sync_start_->value);
 }
 
-std::int64_t PdoParameters::event_timer_ns() const {
-  return dictionary_.value(object_id(communication_, 5)) * 1'000'000;
-}
-
-std::size_t PdoParameters::mapped_count() const {
-  return static_cast<std::size_t>(dictionary_.value(object_id(mapping_, 0)));
-}
+std::size_t PdoParameters::mapped_count() const { return static_cast<std::size_t>(count_->value); }
 
 ObjectId PdoParameters::mapped_id(std::size_t i) const {
-  const auto sub = static_cast<std::uint8_t>(i + 1);
-  return static_cast<ObjectId>(dictionary_.value(object_id(mapping_, sub)) >> 8);
+  return static_cast<ObjectId>(entries_[i]->value >> 8);
 }
 
 ObjectEntry* PdoParameters::mapped(std::size_t i) const { return dictionary_.find(mapped_id(i)); }
 
 std::size_t PdoParameters::bytes(std::size_t i) const {
-  const auto sub = static_cast<std::uint8_t>(i + 1);
-  return static_cast<std::size_t>(dictionary_.value(object_id(mapping_, sub)) & 0xFF) / 8;
+  return static_cast<std::size_t>(entries_[i]->value & 0xFF) / 8;
 }
 
 std::size_t PdoParameters::total_bytes() const {

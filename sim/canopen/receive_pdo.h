@@ -1,7 +1,9 @@
 #pragma once
 // A PDO that the slave receives. A synchronous one is kept until the next SYNC and acts then; an
-// event-driven one acts at once; one shorter than its mapping is ignored and reported. One thread.
+// event-driven one acts at once; one shorter than its mapping is ignored and reported. Where an
+// event timer is set, the next one must come within it, once a first has come. One thread.
 
+#include <cstdint>
 #include <optional>
 
 #include "shared/ports/can_bus.h"
@@ -17,11 +19,18 @@ class ReceivePdo {
       : parameters_(dictionary, PdoDirection::kReceive, number, defaults),
         dictionary_(dictionary) {}
 
-  [[nodiscard]] Result receive(const CanFrame& frame);
+  [[nodiscard]] Result receive(const CanFrame& frame, std::int64_t now_ns);
+  [[nodiscard]] bool synchronous() const { return parameters_.synchronous(); }
   /// SYNC: what came since the last one acts now.
   void on_sync();
-  /// Forgets what waits for a SYNC.
-  void reset() { waiting_.reset(); }
+  /// Watches the deadline.
+  void advance(std::int64_t now_ns);
+  /// The last one was shorter than its mapping.
+  [[nodiscard]] bool too_short() const { return too_short_; }
+  /// The deadline has passed, and none has come since.
+  [[nodiscard]] bool overdue() const { return overdue_; }
+  /// Forgets what waits for a SYNC, and the deadline.
+  void reset();
 
  private:
   void act(const CanFrame& frame);
@@ -29,6 +38,9 @@ class ReceivePdo {
   PdoParameters parameters_;
   ObjectDictionary& dictionary_;
   std::optional<CanFrame> waiting_;
+  std::optional<std::int64_t> seen_ns_;
+  bool too_short_ = false;
+  bool overdue_ = false;
 };
 
 }  // namespace tenon::sim

@@ -9,7 +9,6 @@ namespace {
 
 constexpr std::uint8_t kToggle = 0x10;
 constexpr std::uint8_t kSegmentBytes = 7;
-constexpr std::size_t kDownloadMax = 256;
 
 std::uint32_t load_u32(const SdoServer::Message& message, std::size_t at) {
   return static_cast<std::uint32_t>(message[at]) |
@@ -23,6 +22,10 @@ void store_u32(SdoServer::Message& message, std::size_t at, std::uint32_t value)
 }
 
 }  // namespace
+
+std::size_t SdoServer::size_max(const ObjectEntry& entry) {
+  return entry.type == DataType::kText ? entry.text_bytes_max : size_bytes(entry.type);
+}
 
 std::optional<SdoServer::Message> SdoServer::answer(const Message& request) {
   switch (request[0] >> 5) {
@@ -53,16 +56,16 @@ SdoServer::Message SdoServer::initiate_download(const Message& request) {
   if (entry->access == Access::kReadOnly) return abort(canopen::kAbortReadOnly);
 
   if (expedited) {
-    const std::size_t length = sized ? 4U - (request[0] >> 2 & 3U) : size_bytes(entry->type);
+    const std::size_t own = std::min<std::size_t>(size_max(*entry), 4);
+    const std::size_t length = sized ? 4U - (request[0] >> 2 & 3U) : own;
     const std::uint32_t refusal =
         store({request.begin() + 4, request.begin() + 4 + static_cast<std::ptrdiff_t>(length)});
     return refusal != 0 ? abort(refusal) : reply(0x60);
   }
   announced_.reset();
   if (sized) announced_ = load_u32(request, 4);
-  const std::size_t size = size_bytes(entry->type);
-  if (announced_ && *announced_ > size) return abort(canopen::kAbortLengthHigh);
-  if (announced_ && *announced_ < size) return abort(canopen::kAbortLengthLow);
+  if (announced_ && *announced_ > size_max(*entry)) return abort(canopen::kAbortLengthHigh);
+  if (announced_ && *announced_ < size_bytes(entry->type)) return abort(canopen::kAbortLengthLow);
   transfer_ = Transfer::kDownload;
   toggle_ = 0;
   bytes_.clear();
@@ -70,12 +73,12 @@ SdoServer::Message SdoServer::initiate_download(const Message& request) {
 }
 
 SdoServer::Message SdoServer::download_segment(const Message& request) {
-  if (transfer_ != Transfer::kDownload) return abort(canopen::kAbortCommand);
+  if (transfer_ != Transfer::kDownload) return abort_stray();
   if ((request[0] & kToggle) != toggle_) return abort(canopen::kAbortToggle);
   const std::size_t length = kSegmentBytes - (request[0] >> 1 & 7U);
   bytes_.insert(bytes_.end(), request.begin() + 1,
                 request.begin() + 1 + static_cast<std::ptrdiff_t>(length));
-  if (bytes_.size() > kDownloadMax) return abort(canopen::kAbortLengthHigh);
+  if (bytes_.size() > size_max(*dictionary_.find(id_))) return abort(canopen::kAbortLengthHigh);
   const std::uint8_t answered = static_cast<std::uint8_t>(0x20 | toggle_);
   toggle_ ^= kToggle;
   if ((request[0] & 0x01) != 0) {
@@ -90,6 +93,9 @@ SdoServer::Message SdoServer::initiate_upload() {
   const ObjectEntry* entry = dictionary_.find(id_);
   if (entry == nullptr) return abort(dictionary_.why_missing(id_));
   if (entry->access == Access::kWriteOnly) return abort(canopen::kAbortWriteOnly);
+  if (entry->on_read) {
+    if (const std::uint32_t refusal = entry->on_read(); refusal != 0) return abort(refusal);
+  }
   bytes_ = to_bytes(*entry);
   const std::size_t size = bytes_.size();
   if (size >= 1 && size <= 4) {
@@ -107,7 +113,7 @@ SdoServer::Message SdoServer::initiate_upload() {
 }
 
 SdoServer::Message SdoServer::upload_segment(const Message& request) {
-  if (transfer_ != Transfer::kUpload) return abort(canopen::kAbortCommand);
+  if (transfer_ != Transfer::kUpload) return abort_stray();
   if ((request[0] & kToggle) != toggle_) return abort(canopen::kAbortToggle);
   const std::size_t length = std::min<std::size_t>(kSegmentBytes, bytes_.size() - offset_);
   const bool last = offset_ + length == bytes_.size();
@@ -122,9 +128,16 @@ SdoServer::Message SdoServer::upload_segment(const Message& request) {
 
 std::uint32_t SdoServer::store(const std::vector<std::uint8_t>& bytes) {
   const ObjectEntry* entry = dictionary_.find(id_);
-  if (bytes.size() > size_bytes(entry->type)) return canopen::kAbortLengthHigh;
+  if (bytes.size() > size_max(*entry)) return canopen::kAbortLengthHigh;
   if (bytes.size() < size_bytes(entry->type)) return canopen::kAbortLengthLow;
+  if (entry->type == DataType::kText)
+    return dictionary_.write_text(id_, {bytes.begin(), bytes.end()});
   return dictionary_.write(id_, from_bytes(entry->type, bytes.data()));
+}
+
+SdoServer::Message SdoServer::abort_stray() {
+  if (transfer_ == Transfer::kNone) id_ = 0;
+  return abort(canopen::kAbortCommand);
 }
 
 SdoServer::Message SdoServer::abort(std::uint32_t code) {

@@ -39,6 +39,10 @@ class SdoServer {
   [[nodiscard]] Message initiate_upload();
   [[nodiscard]] Message upload_segment(const Message& request);
   [[nodiscard]] Message abort(std::uint32_t code);
+  /// A segment that belongs to no transfer, or to the other direction.
+  [[nodiscard]] Message abort_stray();
+  /// Bytes that the entry can take.
+  [[nodiscard]] static std::size_t size_max(const ObjectEntry& entry);
   /// Length check and write. @return 0 or an abort code
   [[nodiscard]] std::uint32_t store(const std::vector<std::uint8_t>& bytes);
   [[nodiscard]] Message reply(std::uint8_t command) const;

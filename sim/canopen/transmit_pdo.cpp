@@ -1,20 +1,28 @@
 #include "sim/canopen/transmit_pdo.h"
 
-#include <algorithm>
-
 namespace tenon::sim {
 
-void TransmitPdo::on_sync(std::int64_t now_ns, std::vector<CanFrame>& outbox) {
+void TransmitPdo::on_sync(std::uint8_t counter, std::int64_t now_ns,
+                          std::vector<CanFrame>& outbox) {
   if (!parameters_.valid() || !parameters_.synchronous()) return;
+  const std::uint8_t start = parameters_.sync_start();
+  started_ = started_ || counter == 0 || start == 0 || counter == start;
+  if (!started_) return;
   const std::uint8_t every = parameters_.transmission_type();
-  const CanFrame frame = sample();
+  const CanFrame frame = repeat_ && last_ ? *last_ : sample();
   if (every == 0) {
     if (frame != last_) send(frame, now_ns, outbox);
     return;
   }
   if (++syncs_ < every) return;
   syncs_ = 0;
+  repeat_ = false;
   send(frame, now_ns, outbox);
+}
+
+void TransmitPdo::on_remote(std::uint32_t id, std::int64_t now_ns, std::vector<CanFrame>& outbox) {
+  if (!parameters_.valid() || !parameters_.remote_allowed() || id != parameters_.cob_id()) return;
+  send(sample(), now_ns, outbox);
 }
 
 void TransmitPdo::advance(std::int64_t now_ns, std::vector<CanFrame>& outbox) {
@@ -28,6 +36,7 @@ void TransmitPdo::advance(std::int64_t now_ns, std::vector<CanFrame>& outbox) {
 
 void TransmitPdo::reset() {
   syncs_ = 0;
+  started_ = repeat_ = false;
   last_.reset();
 }
 
@@ -35,9 +44,10 @@ CanFrame TransmitPdo::sample() const {
   CanFrame frame;
   frame.id = parameters_.cob_id();
   for (std::size_t i = 0; i < parameters_.mapped_count(); ++i) {
-    const std::vector<std::uint8_t> bytes = to_bytes(*parameters_.mapped(i));
-    std::copy(bytes.begin(), bytes.end(), frame.data.begin() + frame.length);
-    frame.length = static_cast<std::uint8_t>(frame.length + bytes.size());
+    const auto value = static_cast<std::uint64_t>(parameters_.mapped(i)->value);
+    for (std::size_t byte = 0; byte < parameters_.bytes(i); ++byte) {
+      frame.data[frame.length++] = static_cast<std::uint8_t>(value >> (8 * byte));
+    }
   }
   return frame;
 }

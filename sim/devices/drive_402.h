@@ -1,53 +1,37 @@
 #pragma once
-// A servo drive's firmware: CiA 402 state machine, cyclic synchronous position (mode 8) or
-// interpolated position (mode 7), quick stop, holding brake, following error, loss of the master's
-// heartbeat.
-//
-//   NotReady ─> SwitchOnDisabled <─> ReadyToSwitchOn <─> SwitchedOn <─> OperationEnabled
-//                    ^    ^ ^                                              │       ^
-//                    │    │ └──────────── QuickStopActive <── quick stop ──┘       │
-//                    │    │                      └──────────── enable operation ───┘
-//                 reset   └─ disable voltage from anywhere above
-//                  Fault <── FaultReaction <── error in any state
+// A servo drive's firmware: CiA 402 power states (drive_state.h), cyclic synchronous position (mode
+// 8) or interpolated position (mode 7, with halt), quick stop, holding brake with its delays,
+// following error, torque limit, temperature, supply, loss of the master, and the faults that one
+// may inject.
 //
 // A ramp down (quick stop, disabling, fault reaction, lost master) starts from the demand's own
-// velocity. The brake holds whenever no demand is followed. What turns the axis, and how far it
-// really got, is the plant's: it reads demand() and writes measured(). One thread; time is an
-// argument.
+// velocity. Operation is enabled when the brake is open. What turns the axis, and how far it really
+// got, is the plant's: it reads demand() and writes measured(). One thread; time is an argument.
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
 #include "sim/canopen/slave_node.h"
+#include "sim/devices/active_faults.h"
+#include "sim/devices/drive_motion.h"
+#include "sim/devices/drive_objects.h"
+#include "sim/devices/drive_parameters.h"
+#include "sim/devices/drive_state.h"
 
 namespace tenon::sim {
 
 class Drive402 final : private NodeApplication {
  public:
-  enum class State : std::uint8_t {
-    kNotReady,
-    kSwitchOnDisabled,
-    kReadyToSwitchOn,
-    kSwitchedOn,
-    kOperationEnabled,
-    kQuickStopActive,
-    kFaultReaction,
-    kFault,
-  };
+  using State = DriveState;
+  using Parameters = DriveParameters;
 
-  struct Parameters {
-    std::uint8_t node = 1;
-    std::string name = "tenon virtual drive";
-    std::int8_t mode = canopen::kModeCyclicSynchronousPosition;  ///< the one that it supports
-    std::uint32_t quick_stop_counts_ps2 = 5'000'000;             ///< default of 6085h
-  };
-
-  /// What the servo is to do, in counts.
+  /// What brake and servo are to do. Neither: the axis is free.
   struct Demand {
-    bool brake = true;  ///< engaged; the rest means nothing
+    bool brake = true;     ///< holds the axis, whatever the servo does
+    bool powered = false;  ///< the servo follows the demand with what torque it has
     double position_counts = 0.0;
     double velocity_countsps = 0.0;
+    double torque_max_permille = 0.0;  ///< of rated: 6072h, or less when a fault takes it
   };
 
   struct Measurement {
@@ -68,62 +52,59 @@ class Drive402 final : private NodeApplication {
   [[nodiscard]] Demand demand(std::int64_t step_ns);
   /// The plant after that step.
   void measured(const Measurement& measurement, std::int64_t step_ns);
+  /// The voltage behind the power stage.
+  void set_supply(double volts);
+
+  /// Begins a fault now, that is at the time of the last advance(): node reset, silent node,
+  /// emergency, encoder jump, brake failure, torque loss. Whether it happens is drawn once. Others
+  /// are not a drive's, and ignored.
+  void inject(const Fault& fault);
 
   [[nodiscard]] State state() const { return state_; }
-  [[nodiscard]] bool brake_engaged() const { return motion_ == Motion::kBraked; }
-  [[nodiscard]] std::uint16_t error_code() const;
+  /// The brake's output; it holds a little later.
+  [[nodiscard]] bool brake_engaged() const { return motion_.brake().engaged(); }
+  [[nodiscard]] std::uint16_t error_code() const {
+    return static_cast<std::uint16_t>(objects_.error_code.value);
+  }
 
  private:
-  enum class Motion : std::uint8_t { kBraked, kFollowing, kRamping, kHolding };
-  enum class Command : std::uint8_t {
-    kDisableVoltage,
-    kQuickStop,
-    kShutdown,
-    kSwitchOn,
-    kEnableOperation,
-  };
-
   void on_reset(std::int64_t now_ns) override;
-  void on_sample() override;
+  void on_sample() override {}  // measured() keeps the objects up to date
   void on_sync() override;
   void on_connection_lost() override;
+  [[nodiscard]] bool may_store() const override { return !motion_.powered(); }
 
-  void add_control_objects();
-  void add_motion_objects(const Parameters& parameters);
-  void on_controlword(std::uint16_t word);
-  void process_command(Command command);
-  [[nodiscard]] static Command decode(std::uint16_t word);
+  [[nodiscard]] std::uint32_t on_controlword(std::uint16_t word);
+  [[nodiscard]] std::uint32_t on_mode(std::int64_t mode);
+  void command(DriveCommand command);
+  void apply(const DriveTransition& transition);
+  void act(DriveAction action, bool brake_afterwards);
   void enter_state(State next);
   void fault(std::uint16_t code);
-  void quick_stop();
-  /// Ramps down and enters `next` at standstill, or holds there where nothing is next.
-  void ramp_down(std::uint16_t deceleration_object, std::optional<State> next);
-  void follow_from_standstill();
+  void update_halt();
   void watch_following_error(std::int64_t step_ns);
+  void watch_power_stage(std::int64_t step_ns);
   void update_statusword();
-  [[nodiscard]] bool interpolating() const;
-  [[nodiscard]] std::int64_t option(std::uint16_t index) const;
-  [[nodiscard]] std::int64_t interpolation_period_ns() const;
+  [[nodiscard]] bool interpolates() const;
+  [[nodiscard]] bool cyclic() const;
+  [[nodiscard]] bool supply_good() const;
+  [[nodiscard]] double torque_max_permille() const;
 
-  std::int8_t supported_mode_;
+  Parameters parameters_;
   SlaveNode node_;
+  DriveObjects objects_;
+  DriveMotion motion_;
+  ActiveFaults faults_;
   State state_ = State::kNotReady;
-  Motion motion_ = Motion::kBraked;
+  std::int64_t now_ns_ = 0;
   std::int64_t ready_ns_ = 0;
   std::uint16_t last_controlword_ = 0;
-  std::optional<State> after_standstill_;
-  double deceleration_countsps2_ = 0.0;
-  Measurement measurement_;
-  // The demand runs along a segment from one target to the next, one SYNC period long.
-  double position_counts_ = 0.0;
-  double velocity_countsps_ = 0.0;
-  double segment_start_counts_ = 0.0;
-  double segment_end_counts_ = 0.0;
-  std::int64_t segment_elapsed_ns_ = 0;
-  std::int64_t segment_period_ns_ = 0;
+  std::optional<State> afterwards_;  ///< entered when the motion is done
+  bool halted_ = false;
+  Measurement measurement_;           ///< as the encoder tells it
+  double encoder_jump_counts_ = 0.0;  ///< of a fault
+  double temperature_degC_;
   std::int64_t outside_window_ns_ = 0;
 };
-
-[[nodiscard]] const char* to_string(Drive402::State state);
 
 }  // namespace tenon::sim

@@ -1,13 +1,16 @@
 #include "sim/devices/force_torque_node.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace tenon::sim {
 namespace {
 
 constexpr std::uint32_t kMeasuringDevice = 0x00000194;  // 1000h: CiA 404
 constexpr std::uint32_t kProductCode = 0x0404;
+constexpr std::uint16_t kTare = 0x2003;
 constexpr std::int64_t kCountMax = 32767;
 
 constexpr std::uint32_t mapping(std::uint16_t index, std::uint8_t sub) {
@@ -29,8 +32,9 @@ std::vector<PdoDefaults> pdos(std::uint8_t node) {
 }  // namespace
 
 ForceTorqueNode::ForceTorqueNode(const ForceTorqueSensor& sensor, std::uint64_t seed,
-                                 const std::string& name)
+                                 const Imperfections& imperfections, const std::string& name)
     : sensor_(sensor),
+      imperfections_(imperfections),
       node_({.node = sensor.node,
              .device_type = kMeasuringDevice,
              .product_code = kProductCode,
@@ -38,37 +42,128 @@ ForceTorqueNode::ForceTorqueNode(const ForceTorqueSensor& sensor, std::uint64_t 
              .receive_pdos = {},
              .transmit_pdos = pdos(sensor.node)},
             *this),
-      noise_(seed) {
-  ObjectDictionary& dictionary = node_.dictionary();
-  dictionary.add(object_id(canopen::kForceInputs), {.type = DataType::kU8, .value = 6});
-  for (std::uint8_t sub = 1; sub <= 6; ++sub) {
-    dictionary.add(object_id(canopen::kForceInputs, sub),
-                   {.type = DataType::kI16, .mappable = Mappable::kTransmit});
-  }
-  dictionary.add(object_id(canopen::kSampleCounter),
-                 {.type = DataType::kU16, .mappable = Mappable::kTransmit});
-  dictionary.add(object_id(canopen::kSensorStatus),
-                 {.type = DataType::kU16, .mappable = Mappable::kTransmit});
+      noise_(seed),
+      drift_(~seed),
+      bias_(imperfections.bias) {
+  add_objects();
 }
 
-void ForceTorqueNode::on_reset(std::int64_t /*now_ns*/) { counter_ = 0; }
+void ForceTorqueNode::add_objects() {
+  using enum DataType;
+  static constexpr std::array kNames = {"Force x",  "Force y",  "Force z",
+                                        "Torque x", "Torque y", "Torque z"};
+  ObjectDictionary& dictionary = node_.dictionary();
+  dictionary.describe(canopen::kForceInputs, {"Wrench", Structure::kArray});
+  dictionary.add(object_id(canopen::kForceInputs),
+                 {.name = "Highest sub-index supported", .value = 6});
+  for (std::uint8_t sub = 1; sub <= 6; ++sub) {
+    dictionary.add(object_id(canopen::kForceInputs, sub),
+                   {.name = kNames[sub - 1U], .type = kI16, .mappable = Mappable::kTransmit});
+  }
+  dictionary.add(object_id(canopen::kSampleCounter),
+                 {.name = "Sample counter", .type = kU16, .mappable = Mappable::kTransmit});
+  dictionary.add(object_id(canopen::kSensorStatus),
+                 {.name = "Sensor status", .type = kU16, .mappable = Mappable::kTransmit});
+  // 1 makes what it measures now its zero, 0 takes that back.
+  dictionary.add(object_id(kTare), {.name = "Tare",
+                                    .type = kU8,
+                                    .access = Access::kWriteOnly,
+                                    .high = 1,
+                                    .is_command = true,
+                                    .on_write = [this](std::int64_t value) {
+                                      tare_ = Vector6::Zero();
+                                      if (value == 1) tare_ = filtered_ + bias_;
+                                      return 0U;
+                                    }});
+}
+
+void ForceTorqueNode::on_reset(std::int64_t now_ns) {
+  now_ns_ = now_ns;
+  counter_ = 0;
+  tare_ = Vector6::Zero();
+}
+
+void ForceTorqueNode::advance(std::int64_t now_ns) {
+  drift(now_ns - now_ns_);
+  now_ns_ = now_ns;
+  faults_.advance(now_ns);
+  node_.set_silent(faults_.find(FaultKind::kSilentNode) != nullptr);
+  node_.advance(now_ns);
+}
+
+void ForceTorqueNode::drift(std::int64_t step_ns) {
+  const double sqrt_s = std::sqrt(std::max(0.0, static_cast<double>(step_ns) * 1e-9));
+  if (imperfections_.force_drift_N_sqrts > 0.0) {
+    for (int i = 0; i < 3; ++i)
+      bias_[i] += imperfections_.force_drift_N_sqrts * sqrt_s * drift_.next();
+  }
+  if (imperfections_.torque_drift_Nm_sqrts > 0.0) {
+    for (int i = 3; i < 6; ++i)
+      bias_[i] += imperfections_.torque_drift_Nm_sqrts * sqrt_s * drift_.next();
+  }
+}
+
+void ForceTorqueNode::measured(const Vector6& wrench, std::int64_t step_ns) {
+  // Exact where the wrench is constant over the step.
+  const double part =
+      imperfections_.filter_s > 0.0
+          ? -std::expm1(-1e-9 * static_cast<double>(step_ns) / imperfections_.filter_s)
+          : 1.0;
+  filtered_ += part * (wrench - filtered_);
+}
 
 void ForceTorqueNode::on_sample() {
-  std::uint16_t status = kStatusGood;
-  for (int axis = 0; axis < 6; ++axis) {
-    const bool force = axis < 3;
-    const double range = force ? sensor_.force_range_N : sensor_.torque_range_Nm;
-    const double sigma = force ? sensor_.force_noise_N : sensor_.torque_noise_Nm;
-    const double per_count = force ? sensor_.force_per_count_N : sensor_.torque_per_count_Nm;
-    const double value = wrench_[axis] + sigma * noise_.next();
-    if (!(std::abs(value) < range)) status = kStatusSaturated;
-    const std::int64_t counts = std::llround(std::clamp(value, -range, range) / per_count);
-    node_.dictionary().set(object_id(canopen::kForceInputs, static_cast<std::uint8_t>(axis + 1)),
-                           std::clamp(counts, -kCountMax, kCountMax));
-  }
+  if (faults_.strikes(FaultKind::kStaleForce)) return;
+  if (faults_.strikes(FaultKind::kTornForce)) node_.repeat_transmit_pdo(1);
+  const bool saturated = faults_.strikes(FaultKind::kSaturatedForce);
+  status_ = kStatusGood;
+  for (int axis = 0; axis < 6; ++axis) sample_axis(axis, saturated);
   ++counter_;
   node_.dictionary().set(object_id(canopen::kSampleCounter), counter_);
-  node_.dictionary().set(object_id(canopen::kSensorStatus), status);
+  node_.dictionary().set(object_id(canopen::kSensorStatus), status_);
+}
+
+void ForceTorqueNode::sample_axis(int axis, bool saturated) {
+  const bool force = axis < 3;
+  const double range = force ? sensor_.force_range_N : sensor_.torque_range_Nm;
+  const double sigma = force ? sensor_.force_noise_N : sensor_.torque_noise_Nm;
+  const double per_count = force ? sensor_.force_per_count_N : sensor_.torque_per_count_Nm;
+  const double value = filtered_[axis] + bias_[axis] - tare_[axis] + sigma * noise_.next();
+  if (saturated || !(std::abs(value) < range)) status_ = kStatusSaturated;
+  const double limited = saturated ? range : std::clamp(value, -range, range);
+  const std::int64_t counts = std::llround(limited / per_count);
+  node_.dictionary().set(object_id(canopen::kForceInputs, static_cast<std::uint8_t>(axis + 1)),
+                         std::clamp(counts, -kCountMax, kCountMax));
+}
+
+void ForceTorqueNode::inject(const Fault& fault) {
+  switch (fault.kind) {
+    case FaultKind::kNodeReset:
+      if (happens(fault)) node_.power_on(now_ns_);
+      return;
+    case FaultKind::kEmergency:
+      if (happens(fault)) node_.raise_error(emergency_code(fault));
+      return;
+    case FaultKind::kSilentNode:
+      if (!happens(fault)) return;
+      node_.set_silent(true);
+      return faults_.begin(fault, now_ns_);
+    case FaultKind::kStaleForce:
+    case FaultKind::kTornForce:
+    case FaultKind::kSaturatedForce:
+      return faults_.begin(fault, now_ns_);
+    case FaultKind::kDrop:
+    case FaultKind::kDelay:
+    case FaultKind::kDuplicate:
+    case FaultKind::kCorruptLength:
+    case FaultKind::kBusOff:
+    case FaultKind::kQueueFull:
+    case FaultKind::kInterfaceDown:
+    case FaultKind::kEncoderJump:
+    case FaultKind::kBrakeFailure:
+    case FaultKind::kTorqueLoss:
+      return;
+  }
 }
 
 }  // namespace tenon::sim

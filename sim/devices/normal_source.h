@@ -33,10 +33,10 @@ class NormalSource {
     return u * scale;
   }
 
- private:
   /// [0, 1), 53 bits.
   [[nodiscard]] double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
+ private:
   std::mt19937_64 engine_;
   std::optional<double> spare_;
 };

@@ -27,6 +27,10 @@ enum class FaultKind : std::uint8_t {
   kTorqueLoss = 15,      ///< the joint's drive gives `value` times its effort, 0 <= value < 1
 };
 
+[[nodiscard]] constexpr bool is_bus_fault(FaultKind kind) {
+  return kind <= FaultKind::kInterfaceDown;
+}
+
 struct Fault {
   FaultKind kind = FaultKind::kDrop;
   std::uint8_t node = 0;

@@ -79,7 +79,7 @@ Scene::Contacts Scene::collide(OdeWorld& world, double step_s, const Surface& su
       touching_.push_back({h, e});
       // The pair's stiffness and damping, shared out; ODE's erp and cfm are an implicit spring.
       const double spring = step_s * surface.stiffness_Npm / found;
-      const double damper = surface.damping_Nspm / found;
+      const double damper = surface.relaxation_s * surface.stiffness_Npm / found;
       for (int i = 0; i < found && points_ < kPoints; ++i) {
         dContact& contact = contacts[static_cast<std::size_t>(i)];
         contact.surface = {};
@@ -128,11 +128,13 @@ double Scene::overlap_m() const {
   return deepest;
 }
 
+std::string Scene::name(const Pair& pair) const {
+  return held_names_[pair.held] + "-" + environment_names_[pair.environment];
+}
+
 std::vector<std::string> Scene::touching() const {
   std::vector<std::string> names;
-  for (const Pair& pair : touching_) {
-    names.push_back(held_names_[pair.held] + "-" + environment_names_[pair.environment]);
-  }
+  for (const Pair& pair : touching_) names.push_back(name(pair));
   return names;
 }
 

@@ -14,12 +14,12 @@
 
 namespace tenon::sim {
 
-/// How two surfaces meet. Stiffness and damping are those of a whole face: they are shared out
-/// among the contact points of a pair of shapes.
+/// How two surfaces meet. The stiffness is that of a whole face: it is shared out among the contact
+/// points of a pair of shapes.
 struct Surface {
   double friction = 0.3;
   double stiffness_Npm = 5e4;
-  double damping_Nspm = 100.0;
+  double relaxation_s = 2e-3;  ///< damping over stiffness
 };
 
 /// Contact geometry of the held part against the environment. Pairs are collided in a fixed order,
@@ -50,14 +50,19 @@ class Scene {
   /// Deepest overlap at the body's present pose, m; 0 where nothing touches.
   [[nodiscard]] double overlap_m() const;
 
-  /// The pairs of the last collide(), "held-environment", each once.
+  /// Indices of two shapes that touch.
+  struct Pair {
+    std::size_t held = 0;
+    std::size_t environment = 0;
+  };
+  /// Of the last collide(), each pair once.
+  [[nodiscard]] const std::vector<Pair>& pairs() const { return touching_; }
+  /// "held-environment"
+  [[nodiscard]] std::string name(const Pair& pair) const;
+  /// The names of all pairs.
   [[nodiscard]] std::vector<std::string> touching() const;
 
  private:
-  struct Pair {
-    std::size_t held;
-    std::size_t environment;
-  };
   static constexpr int kPointsAPair = 8;
   static constexpr std::size_t kPoints = 64;
 

@@ -9,8 +9,6 @@
 namespace tenon::sim {
 namespace {
 
-// Time constant of a contact's damping over its stiffness.
-constexpr double kContactRelaxation_s = 2e-3;
 // A part this deep inside another has gone through it; the force limit alone presses far less.
 constexpr double kTunnelled_m = 5e-3;
 // Overlaps below this are resting contacts.
@@ -38,9 +36,7 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
                                    std::int64_t step_us, std::vector<TraceSample>* trace) {
   Physics& p = *physics_;
   const double step_s = kMicrosecond_s * static_cast<double>(step_us);
-  const double stiffness_Npm = particle.physics.contact_stiffness_Npm;
-  const Surface surface{particle.physics.friction, stiffness_Npm,
-                        kContactRelaxation_s * stiffness_Npm};
+  const Surface surface{particle.physics.friction, particle.physics.contact_stiffness_Npm};
   const std::uint64_t messages_before = ode_messages();
   p.tool.set_compliance(move.compliance);
   p.tool.place(particle.pose);

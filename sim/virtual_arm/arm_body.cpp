@@ -1,180 +1,181 @@
 #include "sim/virtual_arm/arm_body.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "shared/base/error.h"
+#include "sim/virtual_arm/composite_inertia.h"
 
 namespace tenon::sim {
 namespace {
 
-constexpr double kGravity_mps2 = 9.81;
-constexpr double kIntegralTime_s = 0.02;
-constexpr double kBrakeStrength = 2.0;   // in effort_max
-constexpr double kBrakeSoftness = 1e-9;  // m/s per N
-constexpr double kEndStopMargin_m = 0.005;
-constexpr double kLinkRadius_m = 0.15;  // of the sphere whose inertia a link has
+constexpr double kGravity_mps2 = 9.80665;
+// A mass without an inertia is a ball of this size.
+constexpr double kLinkRadius_m = 0.15;
 constexpr double kPayloadRadius_m = 0.05;
 constexpr double kPayloadMassMin_kg = 0.01;
 
-dBodyID make_body(const OdeWorld& world, const Pose& pose, double mass_kg, double radius_m) {
-  const dBodyID body = dBodyCreate(world.id());
-  dMass mass;
-  dMassSetSphereTotal(&mass, mass_kg, radius_m);
-  dBodySetMass(body, &mass);
-  set_pose(body, pose);
-  return body;
-}
-
-void translate(dBodyID body, const Vector3& by_m) {
-  const dReal* p = dBodyGetPosition(body);
-  dBodySetPosition(body, p[0] + by_m.x(), p[1] + by_m.y(), p[2] + by_m.z());
-}
-
 Vector3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+Eigen::Matrix3d rotation_of_body(dBodyID body) {
+  const dReal* r = dBodyGetRotation(body);  // rows of four
+  Eigen::Matrix3d rotation;
+  rotation << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
+  return rotation;
+}
+
+Eigen::Matrix3d ball_kgm2(double mass_kg, double radius_m) {
+  return 0.4 * mass_kg * radius_m * radius_m * Eigen::Matrix3d::Identity();
+}
+
+Pose at(const Vector3& position_m) { return {position_m, {1.0, 0.0, 0.0, 0.0}}; }
+
+LinkInertia checked(const Robot& robot, const Joint& joint) {
+  LinkInertia link = joint.link;
+  const auto refuse = [&](const std::string& what) {
+    throw InputError("robot " + robot.name + ": the link behind joint " + joint.name + " has " +
+                     what);
+  };
+  if (!(joint.stiffness > 0.0)) refuse("a servo without stiffness; give the joint one");
+  if (!(link.mass_kg > 0.0)) refuse("mass " + std::to_string(link.mass_kg) + " kg, must be > 0");
+  if (link.inertia_kgm2.isZero(0.0)) link.inertia_kgm2 = ball_kgm2(link.mass_kg, kLinkRadius_m);
+  const Eigen::LLT<Eigen::Matrix3d> factor(link.inertia_kgm2);
+  if (factor.info() != Eigen::Success) refuse("an inertia that is not positive definite");
+  return link;
+}
 
 }  // namespace
 
 ArmBody::ArmBody(const Cell& cell, const Task& task, const Parameters& parameters)
     : scene_(task.held, task.environment, parameters.X_BE),
       surface_(parameters.surface),
-      servo_lag_s_(parameters.servo_lag_s) {
-  dWorldSetGravity(world_.id(), 0.0, 0.0, -kGravity_mps2);
-  build_links(cell);
-  scene_.attach(payload_, X_LP_);
-  move_to(parameters.start_m);
+      gravity_mps2_(-kGravity_mps2 * cell.up_B) {
+  dWorldSetGravity(world_.id(), gravity_mps2_.x(), gravity_mps2_.y(), gravity_mps2_.z());
+  build(cell, parameters);
+  scene_.attach(last_link(), X_OP_);
 }
 
-void ArmBody::build_links(const Cell& cell) {
+void ArmBody::build(const Cell& cell, const Parameters& parameters) {
   Pose X_BL;
   dBodyID parent = nullptr;
-  double carried_kg = std::max(cell.payload_mass_kg, kPayloadMassMin_kg);
-  for (const Joint& joint : cell.robot.joints) carried_kg += joint.link.mass_kg;
-  for (const Joint& joint : cell.robot.joints) {
-    if (joint.kind != Joint::Kind::kPrismatic) {
-      throw InputError("robot " + cell.robot.name + ": joint " + joint.name +
-                       " is revolute; the virtual arm moves prismatic joints only");
-    }
+  for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
+    const Joint& joint = cell.robot.joints[i];
+    const bool revolute = joint.kind == Joint::Kind::kRevolute;
     X_BL = compose(X_BL, joint.origin);
     const Vector3 axis = X_BL.orientation * joint.axis;
-    ServoJoint servo;
-    servo.link = make_body(world_, X_BL, joint.link.mass_kg, kLinkRadius_m);
-    servo.slider = dJointCreateSlider(world_.id(), nullptr);
-    dJointAttach(servo.slider, servo.link, parent);
-    dJointSetSliderAxis(servo.slider, axis.x(), axis.y(), axis.z());
-    dJointSetSliderParam(servo.slider, dParamLoStop, joint.lower - kEndStopMargin_m);
-    dJointSetSliderParam(servo.slider, dParamHiStop, joint.upper + kEndStopMargin_m);
-    servo.effort_max_N = joint.effort_max;
-    servo.stiffness_Npm = cell.robot.stiffness_Npm;
-    servo.damping_Nspm = 2.0 * std::sqrt(servo.stiffness_Npm * carried_kg);
-    carried_kg -= joint.link.mass_kg;
-    parent = servo.link;
-    joints_.push_back(servo);
-  }
-  build_payload(cell, compose(X_BL, cell.robot.flange));
-}
+    const Vector3 motion = parameters.start[i] * joint.axis;
+    X_BL = compose(X_BL, revolute ? Pose{Vector3::Zero(), rotation_of(motion)} : at(motion));
 
-void ArmBody::build_payload(const Cell& cell, const Pose& X_BF) {
-  const Pose X_FL = compose(cell.X_FS, Pose{cell.payload_com_m, {1.0, 0.0, 0.0, 0.0}});
-  payload_ = make_body(world_, compose(X_BF, X_FL),
-                       std::max(cell.payload_mass_kg, kPayloadMassMin_kg), kPayloadRadius_m);
-  mount_ = dJointCreateFixed(world_.id(), nullptr);
-  dJointAttach(mount_, payload_, joints_.back().link);
-  dJointSetFixed(mount_);
-  dJointSetFeedback(mount_, &mount_feedback_);
-  X_LP_ = compose(inverse(X_FL), cell.X_FP);
-  sensor_m_ = -cell.payload_com_m;
-}
-
-// Joints read zero where they were made, so the chain is made at zero and moved afterwards.
-void ArmBody::move_to(const JointVector& start_m) {
-  Vector3 shift_m = Vector3::Zero();
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    dVector3 axis;
-    dJointGetSliderAxis(joints_[i].slider, axis);
-    shift_m += start_m[i] * vector_of(axis);
-    translate(joints_[i].link, shift_m);
-  }
-  translate(payload_, shift_m);
-  for (ServoJoint& joint : joints_) {
-    joint.state.position_m = dJointGetSliderPosition(joint.slider);
+    LinkInertia link = checked(cell.robot, joint);
+    if (i + 1 == cell.robot.joints.size()) link = with_payload(cell, link);
+    const dBodyID body = make_link(X_BL, link);
+    joints_.emplace_back(
+        world_, joint,
+        ServoJoint::Parameters{parameters.servo_lag_s, parameters.integral_time_s,
+                               revolute ? parameters.backlash_rad : parameters.backlash_m},
+        body, parent, X_BL.position_m, axis, parameters.start[i]);
+    parent = body;
   }
 }
 
-void ArmBody::step(const std::vector<JointDemand>& demands, double step_s) {
-  for (std::size_t i = 0; i < joints_.size(); ++i) drive(joints_[i], demands[i], step_s);
+dBodyID ArmBody::make_link(const Pose& X_BL, const LinkInertia& link) {
+  const dBodyID body = dBodyCreate(world_.id());
+  const Eigen::Matrix3d& I = link.inertia_kgm2;
+  dMass mass;
+  dMassSetParameters(&mass, link.mass_kg, 0.0, 0.0, 0.0, I(0, 0), I(1, 1), I(2, 2), I(0, 1),
+                     I(0, 2), I(1, 2));
+  dBodySetMass(body, &mass);
+  set_pose(body, compose(X_BL, at(link.com_m)));
+  links_.push_back(link);
+  return body;
+}
+
+// The last link and all that hangs on it as one body; its origin is the common centre of mass.
+LinkInertia ArmBody::with_payload(const Cell& cell, const LinkInertia& link) {
+  const Pose X_LS = compose(cell.robot.flange, cell.X_FS);
+  load_.mass_kg = std::max(cell.payload_mass_kg, kPayloadMassMin_kg);
+  load_.inertia_kgm2 = ball_kgm2(load_.mass_kg, kPayloadRadius_m);
+  load_.com_m = compose(X_LS, at(cell.payload_com_m)).position_m;
+
+  CompositeInertia composite;
+  composite.add(link.mass_kg, link.com_m, link.inertia_kgm2);
+  composite.add(load_.mass_kg, load_.com_m, load_.inertia_kgm2);
+  LinkInertia both = composite.sum();
+  const Pose X_OL = at(-both.com_m);
+  load_.com_m -= both.com_m;
+  X_OS_ = compose(X_OL, X_LS);
+  X_OP_ = compose(X_OL, compose(cell.robot.flange, cell.X_FP));
+  return both;
+}
+
+void ArmBody::step(std::span<const ServoJoint::Demand> demands, double step_s) {
+  drive(demands, step_s);
   scene_.collide(world_, step_s, surface_);
   const std::uint64_t messages_before = ode_messages();
   world_.step(step_s);
   solver_messages_ += ode_messages() - messages_before;
-  for (ServoJoint& joint : joints_) read(joint);
-  read_wrench();
+  for (ServoJoint& joint : joints_) joint.read();
+  read_wrench(step_s);
 }
 
-void ArmBody::drive(ServoJoint& joint, const JointDemand& demand, double step_s) {
-  if (demand.brake) {
-    joint.braked = true;
-    joint.followed_m = joint.state.position_m;
-    joint.command_velocity_mps = 0.0;
-    joint.softness = kBrakeSoftness;
-    joint.force_max_N = kBrakeStrength * joint.effort_max_N;
-  } else {
-    follow(joint, demand, step_s);
+// From the tool to the base, each joint with what it moves as the arm now stands.
+void ArmBody::drive(std::span<const ServoJoint::Demand> demands, double step_s) {
+  CompositeInertia moved;
+  for (std::size_t i = joints_.size(); i-- > 0;) {
+    ServoJoint& joint = joints_[i];
+    const Eigen::Matrix3d rotation = rotation_of_body(joint.link());
+    moved.add(links_[i].mass_kg, vector_of(dBodyGetPosition(joint.link())),
+              rotation * links_[i].inertia_kgm2 * rotation.transpose());
+    const double inertia =
+        joint.revolute() ? moved.about(joint.anchor_m(), joint.axis()) : moved.mass_kg();
+    joint.drive(demands[i], inertia, step_s);
   }
-  dJointSetSliderParam(joint.slider, dParamVel, joint.command_velocity_mps);
-  dJointSetSliderParam(joint.slider, dParamCFM, joint.softness);
-  dJointSetSliderParam(joint.slider, dParamFMax, joint.force_max_N);
 }
 
-void ArmBody::follow(ServoJoint& joint, const JointDemand& demand, double step_s) {
-  // At release the integral part starts with what the brake held (read() left it there), so that a
-  // vertical axis does not drop.
-  const double lag_m = joint.followed_m - joint.state.position_m;
-  const bool saturated =
-      std::abs(joint.state.effort_N) >= joint.effort_max_N && lag_m * joint.state.effort_N > 0.0;
-  if (!joint.braked && !saturated) {
-    joint.integral_N += joint.stiffness_Npm / kIntegralTime_s * lag_m * step_s;
-    joint.integral_N = std::clamp(joint.integral_N, -joint.effort_max_N, joint.effort_max_N);
+Vector6 ArmBody::load_momentum() const {
+  const Eigen::Matrix3d rotation = rotation_of_body(last_link());
+  const Vector3 omega_radps = vector_of(dBodyGetAngularVel(last_link()));
+  const Vector3 velocity_mps =
+      vector_of(dBodyGetLinearVel(last_link())) + omega_radps.cross(rotation * load_.com_m);
+  Vector6 momentum;
+  momentum << load_.mass_kg * velocity_mps,
+      rotation * load_.inertia_kgm2 * rotation.transpose() * omega_radps;
+  return momentum;
+}
+
+// What the environment and gravity do to the load, less what changes its momentum, has to come
+// through the sensor.
+void ArmBody::read_wrench(double step_s) {
+  const Vector6 before = momentum_;
+  momentum_ = load_momentum();
+  const Vector6 rate = (momentum_ - before) / step_s;
+  const Eigen::Quaterniond orientation = pose_of(last_link()).orientation;
+  const Vector3 sensor_m = orientation * X_OS_.position_m;
+  const Vector3 weight_N = load_.mass_kg * gravity_mps2_;
+  const Vector6 contact = scene_.wrench();
+
+  const Vector3 force_N = weight_N - rate.head<3>();
+  const Vector3 torque_Nm = contact.tail<3>() - sensor_m.cross(contact.head<3>()) +
+                            (orientation * load_.com_m - sensor_m).cross(force_N) - rate.tail<3>();
+  const Eigen::Quaterniond to_sensor = (orientation * X_OS_.orientation).conjugate();
+  wrench_ << to_sensor * (contact.head<3>() + force_N), to_sensor * torque_Nm;
+}
+
+Pose ArmBody::tool() const { return compose(pose_of(last_link()), X_OP_); }
+
+double ArmBody::energy_J() const {
+  double energy_J = 0.0;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const dBodyID body = joints_[i].link();
+    const Vector3 omega_radps =
+        rotation_of_body(body).transpose() * vector_of(dBodyGetAngularVel(body));
+    const Vector3 velocity_mps = vector_of(dBodyGetLinearVel(body));
+    energy_J += 0.5 * links_[i].mass_kg * velocity_mps.squaredNorm() +
+                0.5 * omega_radps.dot(links_[i].inertia_kgm2 * omega_radps) -
+                links_[i].mass_kg * gravity_mps2_.dot(vector_of(dBodyGetPosition(body)));
   }
-  joint.braked = false;
-
-  double velocity_mps = demand.velocity_mps;
-  if (servo_lag_s_ > 0.0) {
-    const double part = 1.0 - std::exp(-step_s / servo_lag_s_);
-    velocity_mps = part * (demand.position_m - joint.followed_m) / step_s;
-    joint.followed_m += velocity_mps * step_s;
-  } else {
-    joint.followed_m = demand.position_m;
-  }
-  // The spring acts on the error at the end of the step, which makes it stable however stiff.
-  const double error_m = joint.followed_m - joint.state.position_m;
-  const double impedance = step_s * joint.stiffness_Npm + joint.damping_Nspm;
-  joint.command_velocity_mps =
-      (joint.stiffness_Npm * error_m + joint.damping_Nspm * velocity_mps + joint.integral_N) /
-      impedance;
-  joint.softness = 1.0 / impedance;
-  joint.force_max_N = joint.effort_max_N;
+  return energy_J;
 }
-
-void ArmBody::read(ServoJoint& joint) {
-  joint.state.position_m = dJointGetSliderPosition(joint.slider);
-  joint.state.velocity_mps = dJointGetSliderPositionRate(joint.slider);
-  const double force_N =
-      std::clamp((joint.command_velocity_mps - joint.state.velocity_mps) / joint.softness,
-                 -joint.force_max_N, joint.force_max_N);
-  joint.state.effort_N = joint.braked ? 0.0 : force_N;
-  if (joint.braked) joint.integral_N = std::clamp(force_N, -joint.effort_max_N, joint.effort_max_N);
-}
-
-void ArmBody::read_wrench() {
-  // ODE reports the mount's force on the payload, and the torque about its centre of mass.
-  const Pose body = pose_of(payload_);
-  const Vector3 force_N = body.orientation.conjugate() * vector_of(mount_feedback_.f1);
-  const Vector3 torque_Nm = body.orientation.conjugate() * vector_of(mount_feedback_.t1);
-  wrench_.head<3>() = -force_N;
-  wrench_.tail<3>() = -(torque_Nm - sensor_m_.cross(force_N));
-}
-
-Pose ArmBody::tool() const { return compose(pose_of(payload_), X_LP_); }
 
 }  // namespace tenon::sim

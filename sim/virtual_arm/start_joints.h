@@ -7,7 +7,9 @@
 
 namespace tenon::sim {
 
-/// The joints that bring the tool to a pose in the nominal task frame.
+/// The joints that bring the tool to a pose in the nominal task frame. Of several solutions the one
+/// furthest from joint limits and singularity, so that the motion that follows has room; the same
+/// one every time.
 /// @throws InputError where the arm cannot, with the joint or the distance that is missing
 [[nodiscard]] JointVector start_joints(const Cell& cell, const Pose& X_TP);
 

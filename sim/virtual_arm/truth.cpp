@@ -30,6 +30,36 @@ Json drive_json(const DriveTruth& drive) {
   return json;
 }
 
+Json list(const Vector3& value) { return {value.x(), value.y(), value.z()}; }
+
+Json list(const std::vector<Vector3>& values) {
+  Json json = Json::array();
+  for (const Vector3& value : values) json.push_back(list(value));
+  return json;
+}
+
+Json world_json(const WorldDraw& world) {
+  Json json;
+  json["friction"] = world.friction.value_or(0.0);
+  json["contact_stiffness_Npm"] = world.contact_stiffness_Npm.value_or(0.0);
+  json["clearance_m"] = world.clearance_m;
+  json["held_size_error_m"] = list(world.held_size_error_m);
+  json["environment_size_error_m"] = list(world.environment_size_error_m);
+  json["task_in_base_error"] = by_axis(world.task_in_base_error);
+  json["tool_in_flange_error"] = by_axis(world.tool_in_flange_error);
+  json["sensor_in_flange_error"] = by_axis(world.sensor_in_flange_error);
+  json["payload_mass_error_kg"] = world.payload_mass_error_kg;
+  json["payload_com_error_m"] = list(world.payload_com_error_m);
+  json["servo_stiffness_factor"] = world.servo_stiffness_factor;
+  json["extra_delay_s"] = world.extra_delay_s;
+  json["backlash_m"] = world.backlash_m;
+  json["backlash_rad"] = world.backlash_rad;
+  json["sensor_noise_factor"] = world.sensor_noise_factor;
+  json["force_drift_N_sqrts"] = world.force_drift_N_sqrts;
+  json["torque_drift_Nm_sqrts"] = world.torque_drift_Nm_sqrts;
+  return json;
+}
+
 // "x +1.2 y -11.6 mm": the translations that are not nothing.
 std::string in_mm(const Vector6& displacement) {
   constexpr double kNothing_m = 1e-6;
@@ -63,6 +93,7 @@ std::string truth_json(const Truth& truth) {
   json["seed"] = truth.seed;
   json["time_s"] = truth.time_s;
   json["offset"] = by_axis(truth.offset);
+  json["world"] = world_json(truth.world);
   json["tool"] = by_axis(displacement_between({}, truth.tool));
   json["error"] = by_axis(truth.error);
   json["error_norm_m"] = truth.error_norm_m;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shared/math/pose.h"
+#include "sim/virtual_arm/world_draw.h"
 
 namespace tenon::sim {
 
@@ -30,6 +31,7 @@ struct Truth {
   std::uint64_t seed = 0;
   double time_s = 0.0;
   Vector6 offset = Vector6::Zero();  ///< of the environment, in task axes, m and rad
+  WorldDraw world;                   ///< how else the real world differed, friction as it was
   Pose tool;                         ///< in the frame of the environment as it really stands
   Vector6 error = Vector6::Zero();   ///< from the goal to `tool`, m and rad
   double error_norm_m = 0.0;

@@ -1,14 +1,20 @@
 #include "sim/virtual_arm/virtual_cell.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "shared/base/error.h"
 #include "sim/devices/drive_402.h"
 #include "sim/devices/force_torque_node.h"
+#include "sim/devices/robot_devices.h"
+#include "sim/faults/bus_faults.h"
+#include "sim/faults/fault_spec.h"
 #include "sim/virtual_arm/arm_body.h"
+#include "sim/virtual_arm/demand_delay.h"
 #include "sim/virtual_arm/environment_offset.h"
 #include "sim/virtual_arm/event_log.h"
 #include "sim/virtual_arm/start_joints.h"
@@ -18,32 +24,59 @@ namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kOverlapMax_m = 1e-5;
-constexpr double kStandstill_mps = 1e-4;
+constexpr double kStandstill = 1e-4;  // m/s or rad/s
 constexpr double kPermille = 1000.0;
 
-Drive402::Parameters drive_parameters(const Joint& joint) {
-  Drive402::Parameters parameters;
-  parameters.node = joint.node;
-  parameters.name = "tenon virtual drive " + joint.name;
-  parameters.mode = static_cast<std::int8_t>(joint.mode);
-  parameters.quick_stop_counts_ps2 =
-      static_cast<std::uint32_t>(std::abs(joint.counts_per_unit) * joint.acceleration_max);
-  return parameters;
+ForceTorqueNode::Imperfections sensor_imperfections(const WorldDraw& world) {
+  ForceTorqueNode::Imperfections imperfections;
+  imperfections.force_drift_N_sqrts = world.force_drift_N_sqrts;
+  imperfections.torque_drift_Nm_sqrts = world.torque_drift_Nm_sqrts;
+  return imperfections;
 }
 
 bool is_sync(const CanFrame& frame) { return frame.id == canopen::kSync && !frame.extended; }
 
-ArmBody::Parameters arm_parameters(const Cell& cell, const Task& task,
+std::size_t delay_steps(const VirtualCell::Options& options) {
+  const double step_s = static_cast<double>(options.physics_step_ns) / kNanosecondsPerSecond;
+  return static_cast<std::size_t>(std::lround(options.world.extra_delay_s / step_s));
+}
+
+bool is_of_sensor(FaultKind kind) {
+  return kind == FaultKind::kStaleForce || kind == FaultKind::kTornForce ||
+         kind == FaultKind::kSaturatedForce;
+}
+
+/// Those of devices, the earliest last.
+std::vector<Fault> pending_faults(const Robot& robot, const std::vector<Fault>& all) {
+  std::vector<Fault> faults = faults_of_devices(all, robot.master_node);
+  for (Fault& fault : faults) {
+    if (fault.node == 0 && is_of_sensor(fault.kind)) fault.node = robot.sensor.node;
+    const bool of_joint = std::any_of(robot.joints.begin(), robot.joints.end(),
+                                      [&](const Joint& joint) { return joint.node == fault.node; });
+    if (of_joint || fault.node == robot.sensor.node) continue;
+    throw InputError(std::string("fault ") + to_string(fault.kind) + ": node " +
+                     std::to_string(fault.node) + " is neither a joint nor the sensor of robot " +
+                     robot.name);
+  }
+  std::stable_sort(faults.begin(), faults.end(),
+                   [](const Fault& a, const Fault& b) { return a.time_s > b.time_s; });
+  return faults;
+}
+
+ArmBody::Parameters arm_parameters(const Cell& cell, const Cell& real, const Task& task,
                                    const VirtualCell::Options& options) {
   ArmBody::Parameters parameters;
-  parameters.start_m = options.joints_m ? *options.joints_m
-                                        : start_joints(cell, find_start(task, options.start).pose);
-  parameters.X_BE = compose(cell.X_BT, displaced(Pose{}, options.offset));
+  // The master knows the cell as its file has it, and drives the arm to the start by that.
+  parameters.start =
+      options.joints ? *options.joints : start_joints(cell, find_start(task, options.start).pose);
+  parameters.X_BE = compose(real.X_BT, displaced(Pose{}, options.offset));
   // Taking up a target with the next SYNC and interpolating to it are two cycles already.
   const double protocol_s = 2e-6 * cell.robot.cycle_us;
   parameters.servo_lag_s = std::max(0.0, cell.robot.response_lag_s - protocol_s);
-  parameters.surface.friction = options.friction.value_or(task.friction.nominal);
-  parameters.surface.stiffness_Npm = cell.contact_stiffness_Npm;
+  parameters.backlash_m = options.world.backlash_m;
+  parameters.backlash_rad = options.world.backlash_rad;
+  parameters.surface.friction = options.world.friction.value_or(task.friction.nominal);
+  parameters.surface.stiffness_Npm = real.contact_stiffness_Npm;
   return parameters;
 }
 
@@ -52,19 +85,20 @@ ArmBody::Parameters arm_parameters(const Cell& cell, const Task& task,
 class VirtualCell::Impl {
  public:
   Impl(const Cell& cell, const Task& task, const Options& options)
-      : cell_(cell),
+      : cell_(real_cell(cell, options.world)),
         task_(task),
         options_(options),
         start_name_(find_start(task, options.start).name),
-        arm_(cell, task, arm_parameters(cell, task, options)),
-        sensor_(cell.robot.sensor, options.seed),
+        faults_to_come_(pending_faults(cell.robot, options.faults)),
+        arm_(cell_, real_task(task, options.world), arm_parameters(cell, cell_, task, options)),
+        sensor_(cell_.robot.sensor, options.seed, sensor_imperfections(options.world)),
+        delay_(cell.robot.joints.size(), delay_steps(options)),
         cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us) {
-    for (const Joint& joint : cell.robot.joints) drives_.emplace_back(drive_parameters(joint));
-    demands_.resize(drives_.size());
-    if (arm_.overlap_m() > kOverlapMax_m) {
+    for (const Joint& joint : cell.robot.joints) drives_.emplace_back(drive_parameters_of(joint));
+    if (arm_.scene().overlap_m() > kOverlapMax_m) {
       throw InputError(
           "task " + task.name + ": at start \"" + start_name_ + "\" the part stands " +
-          std::to_string(arm_.overlap_m()) +
+          std::to_string(arm_.scene().overlap_m()) +
           " m deep in the displaced environment; choose another start, seed or offset");
     }
     for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].measured(measure(i), 0);
@@ -72,31 +106,38 @@ class VirtualCell::Impl {
 
   void step(std::int64_t now_ns, CanBus& bus);
   [[nodiscard]] Truth truth() const;
+  [[nodiscard]] std::int64_t physics_cost_ns() const { return physics_cost_ns_; }
   [[nodiscard]] bool at_standstill() const;
 
  private:
   void power_on(std::int64_t now_ns);
   void advance_physics(std::int64_t now_ns);
   void physics_step();
+  void inject_faults();
   void deliver(const CanFrame& frame, std::int64_t now_ns);
   void sample_sensor();
   void send(CanBus& bus, bool arbitrate);
   void log_drives();
   void log_contacts();
   [[nodiscard]] Drive402::Measurement measure(std::size_t i) const;
+  [[nodiscard]] std::int64_t stopwatch_ns() const {
+    return options_.stopwatch_ns != nullptr ? options_.stopwatch_ns() : 0;
+  }
 
-  Cell cell_;
-  Task task_;
+  Cell cell_;  ///< the real one
+  Task task_;  ///< the nominal one
   Options options_;
   std::string start_name_;
+  std::vector<Fault> faults_to_come_;  ///< the earliest last
   ArmBody arm_;
   std::deque<Drive402> drives_;
   ForceTorqueNode sensor_;
-  std::vector<ArmBody::JointDemand> demands_;
+  DemandDelay delay_;
 
   bool on_ = false;
   std::int64_t on_ns_ = 0;
   std::int64_t physics_ns_ = 0;
+  std::int64_t physics_cost_ns_ = 0;
   // The sensor reports the mean since its last sample, as sensors that sample faster do.
   Vector6 wrench_sum_ = Vector6::Zero();
   int wrench_count_ = 0;
@@ -108,7 +149,7 @@ class VirtualCell::Impl {
   EventLog events_;
   std::vector<Drive402::State> states_seen_;
   std::vector<bool> brakes_seen_;
-  std::set<std::string> contacts_seen_;
+  std::set<std::pair<std::size_t, std::size_t>> contacts_seen_;
   double contact_force_N_max_ = 0.0;
   std::uint32_t faults_ = 0;
 };
@@ -154,7 +195,10 @@ void VirtualCell::Impl::deliver(const CanFrame& frame, std::int64_t now_ns) {
 }
 
 void VirtualCell::Impl::advance_physics(std::int64_t now_ns) {
-  while (physics_ns_ + options_.physics_step_ns <= now_ns) physics_step();
+  while (physics_ns_ + options_.physics_step_ns <= now_ns) {
+    inject_faults();
+    physics_step();
+  }
 }
 
 void VirtualCell::Impl::physics_step() {
@@ -162,11 +206,14 @@ void VirtualCell::Impl::physics_step() {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const Joint& joint = cell_.robot.joints[i];
     const Drive402::Demand demand = drives_[i].demand(step_ns);
-    demands_[i] = {demand.brake,
-                   (demand.position_counts - joint.zero_counts) / joint.counts_per_unit,
-                   demand.velocity_countsps / joint.counts_per_unit};
+    delay_.now()[i] = {demand.brake, demand.powered,
+                       (demand.position_counts - joint.zero_counts) / joint.counts_per_unit,
+                       demand.velocity_countsps / joint.counts_per_unit,
+                       demand.torque_max_permille / kPermille * joint.rated_effort};
   }
-  arm_.step(demands_, static_cast<double>(step_ns) / kNanosecondsPerSecond);
+  const std::int64_t before_ns = stopwatch_ns();
+  arm_.step(delay_.delayed(), static_cast<double>(step_ns) / kNanosecondsPerSecond);
+  physics_cost_ns_ += stopwatch_ns() - before_ns;
   physics_ns_ += step_ns;
   for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].measured(measure(i), step_ns);
   wrench_sum_ += arm_.wrench();
@@ -175,17 +222,30 @@ void VirtualCell::Impl::physics_step() {
   log_contacts();
 }
 
+void VirtualCell::Impl::inject_faults() {
+  const double time_s = static_cast<double>(physics_ns_ - on_ns_) / kNanosecondsPerSecond;
+  while (!faults_to_come_.empty() && faults_to_come_.back().time_s <= time_s) {
+    const Fault fault = faults_to_come_.back();
+    faults_to_come_.pop_back();
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      if (cell_.robot.joints[i].node == fault.node) drives_[i].inject(fault);
+    }
+    if (cell_.robot.sensor.node == fault.node) sensor_.inject(fault);
+    events_.add(physics_ns_ - on_ns_, "fault " + std::string(to_string(fault.kind)) + ", node " +
+                                          std::to_string(fault.node));
+  }
+}
+
 Drive402::Measurement VirtualCell::Impl::measure(std::size_t i) const {
   const Joint& joint = cell_.robot.joints[i];
-  const ArmBody::JointState& state = arm_.joint(i);
-  return {state.position_m * joint.counts_per_unit + joint.zero_counts,
-          state.velocity_mps * joint.counts_per_unit,
-          kPermille * state.effort_N / joint.rated_effort};
+  const ServoJoint::State& state = arm_.joint(i);
+  return {state.encoder * joint.counts_per_unit + joint.zero_counts,
+          state.velocity * joint.counts_per_unit, kPermille * state.effort / joint.rated_effort};
 }
 
 void VirtualCell::Impl::sample_sensor() {
   if (wrench_count_ == 0) return;
-  sensor_.measured(wrench_sum_ / wrench_count_);
+  sensor_.measured(wrench_sum_ / wrench_count_, wrench_count_ * options_.physics_step_ns);
   wrench_sum_ = Vector6::Zero();
   wrench_count_ = 0;
 }
@@ -210,15 +270,17 @@ void VirtualCell::Impl::send(CanBus& bus, bool arbitrate) {
 void VirtualCell::Impl::log_drives() {
   const std::int64_t time_ns = physics_ns_ - on_ns_;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    const std::string drive = "drive " + cell_.robot.joints[i].name + ": ";
+    const auto tell = [&](const char* what) {
+      events_.add(time_ns, "drive " + cell_.robot.joints[i].name + ": " + what);
+    };
     if (drives_[i].state() != states_seen_[i]) {
-      events_.add(time_ns, drive + to_string(drives_[i].state()));
+      tell(to_string(drives_[i].state()));
       if (drives_[i].state() == Drive402::State::kFault) ++faults_;
       states_seen_[i] = drives_[i].state();
     }
     if (drives_[i].brake_engaged() != brakes_seen_[i]) {
       brakes_seen_[i] = drives_[i].brake_engaged();
-      events_.add(time_ns, drive + (brakes_seen_[i] ? "brake engaged" : "brake released"));
+      tell(brakes_seen_[i] ? "brake engaged" : "brake released");
     }
   }
 }
@@ -227,9 +289,9 @@ void VirtualCell::Impl::log_contacts() {
   const double force_N = arm_.contact_force_N();
   if (force_N == 0.0) return;
   contact_force_N_max_ = std::max(contact_force_N_max_, force_N);
-  for (const std::string& pair : arm_.touching()) {
-    if (contacts_seen_.insert(pair).second) {
-      events_.add(physics_ns_ - on_ns_, "first contact " + pair);
+  for (const Scene::Pair& pair : arm_.scene().pairs()) {
+    if (contacts_seen_.insert({pair.held, pair.environment}).second) {
+      events_.add(physics_ns_ - on_ns_, "first contact " + arm_.scene().name(pair));
     }
   }
 }
@@ -241,6 +303,9 @@ Truth VirtualCell::Impl::truth() const {
   truth.seed = options_.seed;
   truth.time_s = static_cast<double>(physics_ns_ - on_ns_) / kNanosecondsPerSecond;
   truth.offset = options_.offset;
+  truth.world = options_.world;
+  truth.world.friction = options_.world.friction.value_or(task_.friction.nominal);
+  truth.world.contact_stiffness_Npm = cell_.contact_stiffness_Npm;
   const Pose X_BE = compose(cell_.X_BT, displaced(Pose{}, options_.offset));
   truth.tool = compose(inverse(X_BE), arm_.tool());
   truth.error = displacement_between(task_.goal, truth.tool);
@@ -249,13 +314,13 @@ Truth VirtualCell::Impl::truth() const {
   truth.goal_tolerance_m = task_.goal_tolerance_m;
   truth.within_tolerance = truth.error_norm_m <= task_.goal_tolerance_m;
   truth.contact_force_N_max = contact_force_N_max_;
-  truth.touching = arm_.touching();
+  truth.touching = arm_.scene().touching();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const Drive402& drive = drives_[i];
     truth.drives.push_back({cell_.robot.joints[i].name, cell_.robot.joints[i].node,
                             to_string(drive.state()), drive.brake_engaged(),
                             drive.node().state() == NmtState::kOperational, drive.error_code(),
-                            arm_.joint(i).position_m});
+                            arm_.joint(i).position});
   }
   truth.faults = faults_;
   truth.solver_messages = arm_.solver_messages();
@@ -266,7 +331,7 @@ Truth VirtualCell::Impl::truth() const {
 
 bool VirtualCell::Impl::at_standstill() const {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    if (std::abs(arm_.joint(i).velocity_mps) > kStandstill_mps) return false;
+    if (std::abs(arm_.joint(i).velocity) > kStandstill) return false;
   }
   return true;
 }
@@ -279,6 +344,8 @@ VirtualCell::~VirtualCell() = default;
 void VirtualCell::step(std::int64_t now_ns, CanBus& bus) { impl_->step(now_ns, bus); }
 
 Truth VirtualCell::truth() const { return impl_->truth(); }
+
+std::int64_t VirtualCell::physics_cost_ns() const { return impl_->physics_cost_ns(); }
 
 bool VirtualCell::at_standstill() const { return impl_->at_standstill(); }
 

@@ -14,27 +14,34 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "shared/cell/cell.h"
 #include "shared/ports/arm.h"
 #include "shared/ports/can_bus.h"
 #include "shared/task/task.h"
+#include "sim/faults/fault.h"
 #include "sim/virtual_arm/truth.h"
+#include "sim/virtual_arm/world_draw.h"
 
 namespace tenon::sim {
 
 class VirtualCell {
  public:
   struct Options {
-    std::string start;                    ///< a start of the task; empty: its first
-    std::uint64_t seed = 0;               ///< of the sensor's noise
-    Vector6 offset = Vector6::Zero();     ///< displacement of the environment, task axes
-    std::optional<double> friction;       ///< unset: the task's nominal
-    std::optional<JointVector> joints_m;  ///< unset: tool at the start in the nominal task frame
+    std::string start;                  ///< a start of the task; empty: its first
+    std::uint64_t seed = 0;             ///< of the sensor's noise
+    Vector6 offset = Vector6::Zero();   ///< displacement of the environment, task axes
+    WorldDraw world;                    ///< how the real cell and task differ from those given
+    std::vector<Fault> faults;          ///< those of devices are carried out, those of the bus not
+    std::optional<JointVector> joints;  ///< unset: tool at the start in the nominal task frame
     std::int64_t physics_step_ns = 500'000;
+    /// A clock of the caller's, read before and after each step of physics, for its cost alone.
+    std::int64_t (*stopwatch_ns)() = nullptr;
   };
 
-  /// Allocates. @throws InputError where the cell cannot hold this task
+  /// Allocates. @throws InputError where the cell cannot hold this task, and for faults of nodes
+  /// that it does not have
   VirtualCell(const Cell& cell, const Task& task, const Options& options);
   VirtualCell(const VirtualCell&) = delete;
   VirtualCell& operator=(const VirtualCell&) = delete;
@@ -46,6 +53,8 @@ class VirtualCell {
   void step(std::int64_t now_ns, CanBus& bus);
 
   [[nodiscard]] Truth truth() const;
+  /// What physics took so far by the stopwatch.
+  [[nodiscard]] std::int64_t physics_cost_ns() const;
   /// No joint moves.
   [[nodiscard]] bool at_standstill() const;
 

@@ -40,7 +40,7 @@ void cycle(benchmark::State& state, int foreign) {
     enabled = enabled && gantry.arm.state() == ArmState::kEnabled;
     setpoint[0] += 1e-6;
     gantry.now_ns += kPeriod_ns;
-    gantry.bus.set_time(gantry.now_ns);
+    gantry.bus.advance(gantry.now_ns);
   }
   if (!enabled) state.SkipWithError("the arm did not stay enabled");
   cost.report(state);

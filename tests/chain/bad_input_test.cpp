@@ -49,9 +49,10 @@ std::string edited(const test::ScratchFolder& folder, const std::string& name,
   return folder.put(name, text);
 }
 
-// The gantry's cell around another robot file.
+// The gantry's cell around another robot file, which finds the gantry's URDF beside itself.
 std::string cell_around(const test::ScratchFolder& folder, const std::string& name,
                         const std::string& robot_file) {
+  (void)edited(folder, "gantry3.urdf", TENON_SOURCE_DIR "/hw/robots/gantry3/gantry3.urdf", "", "");
   return edited(folder, name, gantry_cell_file(), "../robots/gantry3/robot.yaml", robot_file);
 }
 
@@ -123,6 +124,8 @@ TEST(BadInput, OfExecutorInspectorAndBusToolIsOneLineAndStatusTwo) {
   const std::string robot = robot_file();
   const std::string stiff = edited(folder, "stiff.yaml", cell_around(folder, "plain.yaml", robot),
                                    "contact_stiffness_Npm: 5e4", "contact_stiffness_Npm: 5e5");
+  const std::string far = edited(folder, "far.yaml", cell_around(folder, "plain.yaml", robot),
+                                 "position_m: [0.10, 0.05, 0.0]", "position_m: [0.90, 0.05, 0.0]");
   const std::string slow = cell_around(
       folder, "slow.yaml",
       edited(folder, "lag.yaml", robot, "response_lag_s: 0.004", "response_lag_s: 0.010"));
@@ -141,6 +144,17 @@ TEST(BadInput, OfExecutorInspectorAndBusToolIsOneLineAndStatusTwo) {
       {execute(cell, plan, "socketcan:nosuch0"), {"socketcan:nosuch0"}},
       {execute(cell, plan, "slcan-listen://127.0.0.1:0"), {"slcan-listen", "slcan://HOST:PORT"}},
       {execute(cell, plan, "nonsense:uri"), {"nonsense:uri", "socketcan:", "slcan:"}},
+      {{TENON_EXEC_EXE, "--cell", cell, "--plan", plan}, {"--can", "--dry-run"}},
+      {{TENON_EXEC_EXE, "--cell", cell, "--plan", plan, "--can", nobody, "--lcm-url",
+        "upd://239.255.76.67:7667"},
+       {"--lcm-url upd://239.255.76.67:7667", "udpm://"}},
+      {{TENON_EXEC_EXE, "--cell", cell, "--plan", plan, "--can", nobody, "--lcm-url",
+        "udpm://10.1.2.3:7667"},
+       {"10.1.2.3:7667", "multicast group"}},
+      {{TENON_MONITOR_EXE, "--lcm-url", "udpm:/239.255.76.67"}, {"udpm:/239.255.76.67", "udpm://"}},
+      // 0.3 m from a task that stands 0.9 m away, for a joint that ends at 0.8 m.
+      {{TENON_EXEC_EXE, "--cell", far, "--plan", plan, "--dry-run"},
+       {"start '4'", "joint x", "1.2000 m", "[-0.8, 0.8]"}},
       {{TENON_INSPECT_EXE, folder.path() / "none.tnp"}, {"none.tnp", "cannot be read"}},
       {{TENON_INSPECT_EXE, other_version}, {"version.tnp", "version"}},
       {{TENON_INSPECT_EXE}, {"plan", "--help"}},

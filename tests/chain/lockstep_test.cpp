@@ -14,6 +14,7 @@
 #include "shared/plan/plan.h"
 #include "sim/rollout/ode_rollout.h"
 #include "tests/chain/planned.h"
+#include "tests/support/frame_filter.h"
 
 namespace tenon::tests {
 namespace {
@@ -208,8 +209,8 @@ TEST(Chain, AfterAMissingAnswerGuardedMovesTakeNoSamplesForAFewCycles) {
   Lockstep run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0), &recorder);
   into_motion(run);
   int lost = 0;
-  run.bus().set_filter(
-      [&](CanFrame& frame, std::size_t) { return frame.id != 0x190 || lost++ > 0; });
+  const FrameFilter filter(
+      run.bus(), [&](CanFrame& frame, std::size_t) { return frame.id != 0x190 || lost++ > 0; });
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(run.cycle());
   EXPECT_GE(lost, 1);
   const auto at = [&](std::size_t back) {

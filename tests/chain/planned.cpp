@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "planner/cell_fit.h"
 #include "planner/planner.h"
 #include "shared/config/load.h"
 #include "sim/rollout/ode_rollout.h"
@@ -21,10 +22,10 @@ double now_s() {
 Plan make(const std::string& start) {
   planner::PlannerOptions options;
   options.threads = 2;
-  options.assumptions.contact_stiffness_Npm = gantry_cell().contact_stiffness_Npm;
-  options.assumptions.latency_max_s = latency_s(gantry_cell().robot);
-  const sim::OdeRollout rollout(box_task());
-  const auto report = planner::make_plan(box_task(), box_start(start), rollout, options, now_s);
+  const planner::CellFit fit = planner::fit_to_cell(box_task(), gantry_cell());
+  options.assumptions = fit.assumptions;
+  const sim::OdeRollout rollout(fit.task);
+  const auto report = planner::make_plan(fit.task, box_start(start), rollout, options, now_s);
   if (!report.plan) throw std::runtime_error("start " + start + ": " + report.reason);
   return *report.plan;
 }

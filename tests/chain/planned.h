@@ -13,8 +13,7 @@ namespace tenon::tests {
 [[nodiscard]] const Cell& gantry_cell();
 /// The start of box_task() by name.
 [[nodiscard]] const Start& box_start(const std::string& name);
-/// Planned with the cell's contact stiffness and latency, as `tenon-plan --cell` does; through
-/// bytes.
+/// Planned for the cell as `tenon-plan --cell` does; through bytes.
 [[nodiscard]] const Plan& box_plan(const std::string& start);
 
 }  // namespace tenon::tests

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "executor/ending.h"
-#include "executor/telemetry.h"
+#include "executor/telemetry/telemetry.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"
@@ -215,6 +215,24 @@ TEST_F(ProcessesTest, CtrlCInMidMotionStopsTheArmAndSaysSo) {
       << processes->exec().err();
   EXPECT_EQ(processes->truth().at("faults"), 0);
   expect_brakes_engaged(processes->truth());
+}
+
+TEST_F(ProcessesTest, CtrlCDuringTheBringUpLeavesAResult) {
+  // On a bus where nobody answers the bring-up goes on for seconds.
+  const test::ScratchFolder elsewhere;
+  SimProcess sim(elsewhere.path(), "4", {});
+  sim.process().send(SIGSTOP);
+  const std::string result = elsewhere.path() / "result.json";
+  ChildProcess exec(elsewhere.path(), {TENON_EXEC_EXE, "--cell", gantry_cell_file(), "--plan", plan,
+                                       "--can", sim.uri(), "--lcm-url", "none", "--json", result});
+  ASSERT_TRUE(exec.wait_until([&] { return exec.out().find("cycle 2 ms") != std::string::npos; }));
+  exec.send(SIGINT);
+  EXPECT_EQ(exec.wait(), 1);
+  sim.process().send(SIGCONT);
+  const nlohmann::json json = nlohmann::json::parse(elsewhere.get("result.json"));
+  EXPECT_EQ(json.at("reason"), "stop_requested");
+  EXPECT_EQ(json.at("exit_code"), 1);
+  EXPECT_EQ(json.at("steps").size(), 0U);
 }
 
 TEST_F(ProcessesTest, DrivesStopByThemselvesWhenTheExecutorIsKilledInMidMotion) {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "executor/recorder.h"
+#include "executor/telemetry/recorder.h"
 #include "tests/executor/bench.h"
 #include "tests/support/allocation_count.h"
 

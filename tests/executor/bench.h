@@ -30,6 +30,14 @@ struct Bench {
         runner(arm, controller, sink != nullptr ? sink : &keeper, {}) {
     (void)arm.prepare(0);
   }
+  /// Any arm, standing at `joints`.
+  Bench(const Plan& plan, const Controller::Parameters& parameters, const Cell& bench_cell,
+        const JointVector& joints)
+      : arm(bench_cell, joints),
+        controller(bench_cell, plan, parameters),
+        runner(arm, controller, &keeper, {}) {
+    (void)arm.prepare(0);
+  }
 
   bool step() { return runner.step(now_ns += kCycle_ns); }
 

@@ -42,6 +42,39 @@ Cell hand_made_cell() {
   return cell;
 }
 
+Cell hand_made_arm_cell() {
+  Cell cell = hand_made_cell();
+  cell.name = "hand-made arm";
+  cell.robot.name = "arm";
+  cell.robot.joints.clear();
+  const double half = std::numbers::pi / 2;
+  const double whole = std::numbers::pi;
+  const auto add = [&](const Vector3& xyz_m, const Vector3& rpy_rad, double range_rad) {
+    Joint joint;
+    joint.name = "arm_" + std::to_string(cell.robot.joints.size() + 1);
+    joint.kind = Joint::Kind::kRevolute;
+    joint.origin = {xyz_m, turn(rpy_rad.z(), Vector3::UnitZ()) *
+                               turn(rpy_rad.y(), Vector3::UnitY()) *
+                               turn(rpy_rad.x(), Vector3::UnitX())};
+    joint.axis = Vector3::UnitZ();
+    joint.lower = -range_rad;
+    joint.upper = range_rad;
+    joint.speed_max = 1.26;
+    joint.acceleration_max = 5.0;
+    cell.robot.joints.push_back(joint);
+  };
+  add({0, 0, 0}, {0, 0, 0}, 2.967);
+  add({0, 0, 0}, {half, 0, 0}, 2.967);
+  add({0, 0.350, 0}, {0, whole, 0}, 2.714);
+  add({0, 0, 0}, {-half, whole, 0}, 2.967);
+  add({0, 0.005263, 0.305}, {half, 0, whole}, 2.967);
+  add({0, 0, 0}, {-half, 0, 0}, 2.967);
+  cell.X_BT = {Vector3(0.40, 0.0, 0.05), Eigen::Quaterniond::Identity()};
+  cell.X_FP = {Vector3(0.0, 0.0, 0.12), turn(whole, Vector3::UnitX())};
+  cell.X_FS = {Vector3(0.0, 0.0, 0.04), Eigen::Quaterniond::Identity()};
+  return cell;
+}
+
 Step hand_made_step(int axis, double displacement_m,
                     std::initializer_list<std::pair<Outcome, Successor>> ways) {
   Step step;

@@ -14,6 +14,11 @@ namespace tenon::executor {
 /// frames are all turned against each other; the tool's orientation in the task frame is identity.
 [[nodiscard]] Cell hand_made_cell();
 
+/// A six-axis arm (the kinematics and limits of a Schunk LWA 4P, 2 ms) that stands on its base with
+/// its tool pointing down: task axes are those of the base, the task frame lies 0.40 m in front of
+/// it and 0.05 m above its foot, the tool's orientation in the task frame is identity.
+[[nodiscard]] Cell hand_made_arm_cell();
+
 /// A step along one translation axis. @param ways what each named outcome leads to
 [[nodiscard]] Step hand_made_step(int axis, double displacement_m,
                                   std::initializer_list<std::pair<Outcome, Successor>> ways);

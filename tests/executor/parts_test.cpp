@@ -9,12 +9,12 @@
 #include <random>
 #include <set>
 
-#include "executor/black_box.h"
-#include "executor/histogram.h"
 #include "executor/leaky_bucket.h"
 #include "executor/sensor_tare.h"
 #include "executor/state_machine.h"
 #include "executor/stop_profile.h"
+#include "executor/telemetry/black_box.h"
+#include "executor/telemetry/histogram.h"
 #include "executor/wrench_estimator.h"
 #include "tests/executor/hand_made.h"
 

@@ -76,49 +76,5 @@ TEST(PlanCheck, AForceLimitAboveTheFaultIsRefused) {
             "force_limit = 55 N, must be at most the cell's force_fault_N = 50 N");
 }
 
-TEST(PlanCheck, AGantryCannotYieldInRotation) {
-  Plan plan = touch_and_slide_plan();
-  plan.compliance.compliant_axes = 0x27;
-  EXPECT_EQ(refusal(plan, hand_made_cell()),
-            "compliant axes x y z rz: the robot can move the tool along x y z only");
-}
-
-TEST(PlanCheck, ATurnedStartIsRefusedOnAGantry) {
-  Plan plan = touch_and_slide_plan();
-  plan.start.orientation = rotation_of(Vector3(0, 0, 0.2));
-  EXPECT_EQ(
-      refusal(plan, hand_made_cell()),
-      "start 's1': the robot's tool is turned by 0.2 rad against it, and the robot moves only x "
-      "y z");
-}
-
-TEST(PlanCheck, ASlowJointIsRefusedByName) {
-  Cell cell = hand_made_cell();
-  cell.robot.joints[1].speed_max = 0.08;
-  EXPECT_EQ(refusal(touch_and_slide_plan(), cell),
-            "start: 0.1 m/s of the tool can ask joint y for 0.1 m/s, its speed_max is 0.08");
-}
-
-TEST(PlanCheck, AStartBeyondAJointIsRefusedByThatJoint) {
-  Plan plan = touch_and_slide_plan();
-  plan.start.position_m.z() = 0.9;  // flange and base are 0.22 m below each other
-  const std::string line = refusal(plan, hand_made_cell());
-  EXPECT_EQ(line,
-            "start 's1': joint z would be at 0.9200 m, must be in [-0.5, 0.5] less 0.005 margin");
-}
-
-// start 0 -> +z at most 0.3 -> +z at most 0.3: the second step leaves the range of joint z
-TEST(PlanCheck, AStepWhoseEnvelopeLeavesTheRangeIsRefusedByItsNumber) {
-  Plan plan = hand_made_plan();
-  plan.steps.push_back(hand_made_step(2, 0.3, {{Outcome::kReached, Successor{1}}}));
-  plan.steps.push_back(hand_made_step(2, 0.3, {{Outcome::kReached, kSuccessorDone}}));
-  const std::string line = refusal(plan, hand_made_cell());
-  EXPECT_EQ(line.rfind("step 1: joint z would be at 0.6", 0), 0U) << line;
-  plan.steps[1].displacement[2] = -0.3;
-  plan.steps[1].outcomes[0].envelope.travelled_min[2] = -0.302;
-  plan.steps[1].outcomes[0].envelope.travelled_max[2] = 0.0;
-  EXPECT_TRUE(check_plan(plan, hand_made_cell()).empty());
-}
-
 }  // namespace
 }  // namespace tenon::executor

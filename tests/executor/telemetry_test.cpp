@@ -1,6 +1,6 @@
 // What goes out over LCM, decoded with the generated types.
 
-#include "executor/telemetry.h"
+#include "executor/telemetry/telemetry.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "executor/recorder.h"
-#include "executor/run_result.h"
+#include "executor/telemetry/lcm_url.h"
+#include "executor/telemetry/recorder.h"
+#include "executor/telemetry/run_result.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"
@@ -114,6 +115,21 @@ TEST(Telemetry, AFullRingDropsAndCounts) {
 TEST(Telemetry, ALogThatCannotBeWrittenIsBadInput) {
   std::vector<std::string> warnings;
   EXPECT_THROW((void)open_telemetry("none", "/nonexistent/run.lcmlog", warnings), InputError);
+}
+
+TEST(LcmUrl, ASlipOfThePenIsNoMissingRoute) {
+  for (const char* good : {"udpm://239.255.76.67:7667?ttl=0", "udpm://", "udpm://:7000", "memq://",
+                           "udpm://239.1.2.3", "file://run.lcmlog?mode=w"}) {
+    EXPECT_NO_THROW(check_lcm_url(good)) << good;
+  }
+  for (const char* bad :
+       {"", "upd://239.255.76.67:7667", "udpm:239.255.76.67:7667", "239.255.76.67",
+        "udpm://10.0.0.1:7667", "udpm://239.255.76.67:0", "udpm://239.255.76.67:7x",
+        "udpm://239.255.76:7667", "file://", "memq://x", "udpm://host:7667"}) {
+    EXPECT_THROW(check_lcm_url(bad), InputError) << bad;
+    std::vector<std::string> warnings;
+    EXPECT_THROW((void)open_telemetry(bad, "", warnings), InputError) << bad;
+  }
 }
 
 TEST(RunResult, TheJsonTellsStepsReasonAndCycle) {

@@ -1,6 +1,6 @@
 // What was executed, replayed offline from its trace, is the same bit for bit.
 
-#include "executor/trace.h"
+#include "executor/telemetry/trace.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <memory>
 
-#include "executor/recorder.h"
+#include "executor/telemetry/recorder.h"
 #include "shared/base/error.h"
 #include "tests/executor/bench.h"
 
@@ -20,9 +20,9 @@ std::filesystem::path temporary(const char* name) {
 }
 
 // Runs touch_and_slide_plan() on a noisy arm and leaves its trace in `file`.
-void record_run(const std::filesystem::path& file) {
+void record_run(const std::filesystem::path& file, const Cell& cell = hand_made_cell()) {
   const auto recorder = std::make_unique<Recorder>();
-  Bench bench(touch_and_slide_plan(), {}, hand_made_cell(), Vector3::Zero(), recorder.get());
+  Bench bench(touch_and_slide_plan(), {}, cell, Vector3::Zero(), recorder.get());
   bench.arm.walls.push_back({0, +1, 0.13});
   bench.arm.noise_N = 0.1;
   TraceWriter writer(file, bench.controller.runner());
@@ -42,7 +42,7 @@ TEST(Trace, AReplayedRunGivesTheSameBits) {
   for (const TracedMove& traced : moves) {
     ASSERT_TRUE(traced.complete);
     ASSERT_GT(traced.inputs.size(), 50U);
-    GuardedMove move(move_parameters(plan, traced.step), traced.signature_before);
+    GuardedMove move(move_parameters(plan, traced), traced.signature_before);
     for (const TracedInput& input : traced.inputs) {
       EXPECT_FALSE(move.result().has_value());
       ASSERT_EQ(move.update(input.input).setpoint.pose, input.setpoint);
@@ -57,13 +57,32 @@ TEST(Trace, AReplayedRunGivesTheSameBits) {
   std::filesystem::remove(file);
 }
 
+TEST(Trace, AStepThatTheDryRunSlowedIsReplayedAtTheSpeedsOfTheTrace) {
+  const std::filesystem::path file = temporary("tenon_trace_slow_test.txt");
+  Cell cell = hand_made_cell();
+  cell.robot.joints[1].speed_max = 0.03;
+  record_run(file, cell);
+  const TracedMove traced = read_trace(file).back();
+  const Plan plan = touch_and_slide_plan();
+  EXPECT_LT(traced.speeds.contact_mps, 0.7 * plan.parameter_sets[0].speeds.contact_mps);
+  GuardedMove as_executed(move_parameters(plan, traced), traced.signature_before);
+  GuardedMove as_planned(move_parameters(plan, traced.step), traced.signature_before);
+  bool differs = false;
+  for (const TracedInput& input : traced.inputs) {
+    ASSERT_EQ(as_executed.update(input.input).setpoint.pose, input.setpoint);
+    differs = differs || !(as_planned.update(input.input).setpoint.pose == input.setpoint);
+  }
+  EXPECT_TRUE(differs);
+  std::filesystem::remove(file);
+}
+
 TEST(Trace, AnotherThresholdMakesAnotherMoveOfTheSameTrace) {
   const std::filesystem::path file = temporary("tenon_trace_threshold_test.txt");
   record_run(file);
   const TracedMove traced = read_trace(file).front();
   Plan plan = touch_and_slide_plan();
   plan.parameter_sets[0].thresholds.force_on_N = 3.5;
-  GuardedMove move(move_parameters(plan, traced.step), traced.signature_before);
+  GuardedMove move(move_parameters(plan, traced), traced.signature_before);
   bool differs = false;
   for (const TracedInput& input : traced.inputs) {
     differs = differs || !(move.update(input.input).setpoint.pose == input.setpoint);
@@ -89,7 +108,7 @@ TEST(Trace, ATraceWithLostRecordsIsRefused) {
 
 TEST(Trace, GarbageIsRefusedByItsLine) {
   const std::filesystem::path file = temporary("tenon_trace_garbage_test.txt");
-  std::ofstream(file) << "tenon-trace 1\nm 0 0\ni 12 zz\n";
+  std::ofstream(file) << "tenon-trace 2\nm 0 0 1 0 0 0 0 0 0 0 0\ni 12 zz\n";
   try {
     (void)read_trace(file);
     ADD_FAILURE() << "accepted";

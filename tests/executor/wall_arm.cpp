@@ -8,18 +8,24 @@ namespace {
 constexpr int kTransitionCycles = 3;
 constexpr double kGravity_mps2 = 9.80665;
 
-}  // namespace
-
-WallArm::WallArm(const Cell& cell, const Pose& tool) : cell_(cell), chain_(cell.robot) {
+JointVector gantry_joints(const Cell& cell, const Pose& tool) {
   SerialChain::InverseParameters parameters;
   parameters.axes = 0x07;
-  const auto inverse_kinematics =
-      chain_.inverse(compose(compose(cell.X_BT, tool), inverse(cell.X_FP)), {}, parameters);
-  if (inverse_kinematics.status != SerialChain::InverseStatus::kSolved) {
+  const auto found =
+      SerialChain(cell.robot)
+          .inverse(compose(compose(cell.X_BT, tool), inverse(cell.X_FP)), {}, parameters);
+  if (found.status != SerialChain::InverseStatus::kSolved) {
     throw std::invalid_argument("the wall arm does not reach its start");
   }
-  position_ = setpoint_ = inverse_kinematics.position;
+  return found.position;
 }
+
+}  // namespace
+
+WallArm::WallArm(const Cell& cell, const Pose& tool) : WallArm(cell, gantry_joints(cell, tool)) {}
+
+WallArm::WallArm(const Cell& cell, const JointVector& joints)
+    : cell_(cell), chain_(cell.robot), position_(joints), setpoint_(joints) {}
 
 bool WallArm::prepare(std::int64_t /*now_ns*/) {
   if (state_ == ArmState::kUnconfigured) state_ = ArmState::kDisabled;
@@ -96,11 +102,11 @@ void WallArm::start_cycle(std::int64_t now_ns) noexcept {
 bool WallArm::receive(std::int64_t /*now_ns*/, ArmFeedback& feedback) noexcept {
   feedback = answer_;
   const bool answered = answer_.wrench_counter != 0;
-  feedback.joints_fresh = answered ? 0x07U & ~mute_joints : 0U;
+  feedback.joints_fresh = answered ? all_joints() & ~mute_joints : 0U;
   feedback.wrench_fresh = answered && !mute_sensor;
   feedback.state = state_;
   feedback.fault = fault_;
-  return feedback.joints_fresh == 0x07U && feedback.wrench_fresh;
+  return feedback.joints_fresh == all_joints() && feedback.wrench_fresh;
 }
 
 void WallArm::command(std::int64_t /*now_ns*/, ArmRequest request,

@@ -1,5 +1,5 @@
 #pragma once
-// A gantry that follows its setpoints exactly, with springy walls around its tool and a wrist
+// An arm that follows its setpoints exactly, with springy walls around its tool and a wrist
 // sensor: the arm port without bus, drives or dynamics. Everything it answers is one cycle old.
 // Steps with its caller; no thread, no clock. Knobs break it on purpose.
 
@@ -24,6 +24,8 @@ class WallArm : public Arm {
  public:
   /// @param tool where the tool stands, in the task frame; the cell's gantry must reach it
   WallArm(const Cell& cell, const Pose& tool);
+  /// Any arm. @param joints where it stands
+  WallArm(const Cell& cell, const JointVector& joints);
 
   // The world.
   std::vector<Wall> walls;
@@ -40,7 +42,7 @@ class WallArm : public Arm {
   Vector6 push = Vector6::Zero();  ///< extra wrench on the tool, task axes
   ArmFault break_with;             ///< set a kind: the arm goes to fault
 
-  [[nodiscard]] std::size_t joint_count() const noexcept override { return 3; }
+  [[nodiscard]] std::size_t joint_count() const noexcept override { return chain_.joint_count(); }
   [[nodiscard]] bool prepare(std::int64_t now_ns) override;
   void start_cycle(std::int64_t now_ns) noexcept override;
   [[nodiscard]] bool receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept override;
@@ -56,6 +58,7 @@ class WallArm : public Arm {
   [[nodiscard]] int quick_stops() const { return quick_stops_; }
 
  private:
+  [[nodiscard]] std::uint32_t all_joints() const { return (1U << chain_.joint_count()) - 1U; }
   void follow_request();
   [[nodiscard]] Vector6 sensor_reading();
 

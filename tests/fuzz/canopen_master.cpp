@@ -15,6 +15,7 @@
 #include "shared/base/bytes.h"
 #include "tests/fuzz/support/must.h"
 #include "tests/hw/gantry_on_bus.h"
+#include "tests/support/frame_filter.h"
 
 namespace {
 
@@ -23,7 +24,7 @@ using namespace tenon::hw;
 using fuzz::must;
 
 constexpr int kOperationsMax = 400;
-constexpr int kBringUpMax_ms = 300;
+constexpr int kBringUpMax_ms = 700;
 constexpr int kDisturbedBringUpMax_ms = 3000;
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
 
@@ -40,12 +41,13 @@ Robot one_axis() {
 
 class Bench {
  public:
-  Bench() : gantry_(one_axis()), intruder_(gantry_.bus.attach()) {
-    gantry_.bus.set_filter([this](const CanFrame& frame, std::size_t from) {
-      if (from == 0) check_sent(frame);
-      return true;
-    });
-  }
+  Bench()
+      : gantry_(one_axis()),
+        intruder_(gantry_.bus.attach()),
+        filter_(gantry_.bus, [this](const CanFrame& frame, std::size_t end) {
+          if (end == 0) check_sent(frame);
+          return true;
+        }) {}
 
   void run(ByteReader& in) {
     const bool disturbed = (in.read<std::uint8_t>() & 1U) != 0;
@@ -176,7 +178,7 @@ class Bench {
 
   void pass(std::int64_t time_ns) {
     gantry_.now_ns += time_ns;
-    gantry_.bus.set_time(gantry_.now_ns);
+    gantry_.bus.advance(gantry_.now_ns);
   }
 
   void check_feedback(const CanopenArm::Counters& before) {
@@ -211,6 +213,7 @@ class Bench {
 
   GantryOnBus gantry_;
   CanBus& intruder_;
+  tests::FrameFilter filter_;
   ArmFault fault_;
 };
 

@@ -1,6 +1,7 @@
-// The virtual arm's CANopen nodes under arbitrary traffic: a drive in mode 8 or 7, or the
-// force/torque sensor. Nothing that arrives may take an object out of its range, make the node send
-// what is no frame, or leave a drive without brake in a state that has none.
+// The virtual arm's CANopen nodes under arbitrary traffic, injected faults, supply and load: a
+// drive in mode 8 or 7, or the force/torque sensor. Nothing that arrives may take an object out of
+// its range, make the node send what is no frame, or leave a drive without brake where it has no
+// power.
 //
 // Input: one byte that picks the device, then operations, each a byte and its arguments.
 
@@ -28,6 +29,7 @@ constexpr std::uint8_t kNode = 1;
 constexpr std::uint8_t kMaster = 127;
 constexpr std::int64_t kStep_ns = 500'000;
 constexpr int kOperationsMax = 400;
+constexpr int kFaultKinds = 16;
 
 ForceTorqueSensor sensor() {
   ForceTorqueSensor sensor;
@@ -126,22 +128,44 @@ class Bench {
       const Drive402::Demand demand = drive_->demand(kStep_ns);
       must(std::isfinite(demand.position_counts) && std::isfinite(demand.velocity_countsps),
            "a demand is finite");
-      if (!demand.brake && !stuck_) {
-        plant_ = {demand.position_counts, demand.velocity_countsps, 0.0};
-      } else {
-        plant_.velocity_countsps = 0.0;
+      must(demand.powered || drive_->brake_engaged(), "without power the brake's output is on");
+      must(demand.torque_max_permille >= 0.0, "a torque limit is no less than 0");
+      plant_.velocity_countsps = 0.0;
+      if (demand.powered && !demand.brake && !stuck_) {
+        plant_.position_counts = demand.position_counts;
+        plant_.velocity_countsps = demand.velocity_countsps;
       }
       drive_->measured(plant_, kStep_ns);
       drive_->advance(now_ns_);
     }
   }
 
+  /// Bits of the operation: 3 stuck, 4 a fault, 5 a supply, 6 a load; a sensor gets a wrench too.
   void disturb(std::uint8_t operation, ByteReader& in) {
     stuck_ = (operation & 0x08U) != 0;
-    if (!sensor_) return;
+    if ((operation & 0x10U) != 0) inject(in);
+    if (drive_) {
+      if ((operation & 0x20U) != 0) drive_->set_supply(in.read<std::uint8_t>());
+      if ((operation & 0x40U) != 0) plant_.torque_permille = in.read<std::int16_t>();
+      return;
+    }
     Vector6 wrench;
     for (int axis = 0; axis < 6; ++axis) wrench[axis] = 0.05 * in.read<std::int16_t>();
-    sensor_->measured(wrench);
+    sensor_->measured(wrench, kStep_ns);
+  }
+
+  void inject(ByteReader& in) {
+    Fault fault;
+    fault.kind = static_cast<FaultKind>(in.read<std::uint8_t>() % kFaultKinds);
+    fault.value = in.read<std::int16_t>();
+    fault.duration_s = 0.001 * in.read<std::uint8_t>();
+    fault.probability = in.read<std::uint8_t>() / 255.0;
+    if (fault.kind == FaultKind::kTorqueLoss) fault.value = std::abs(fault.value) / 32768.0;
+    if (drive_) {
+      drive_->inject(fault);
+    } else {
+      sensor_->inject(fault);
+    }
   }
 
   void check() {
@@ -161,7 +185,8 @@ class Bench {
   void check_drive() {
     const auto word = static_cast<std::uint16_t>(
         drive_->node().dictionary().value(object_id(canopen::kStatusword)));
-    // CiA 402, states by statusword, in the order of Drive402::State: mask, value, brake.
+    // CiA 402, states by statusword, in the order of Drive402::State: mask, value, whether the
+    // brake must be on. Where it need not be, it opens or closes, or the axis is under power.
     struct Row {
       std::uint16_t mask;
       std::uint16_t value;
@@ -170,15 +195,14 @@ class Bench {
     static constexpr std::array<Row, 8> kRows = {{{0x4F, 0x00, true},
                                                   {0x4F, 0x40, true},
                                                   {0x6F, 0x21, true},
-                                                  {0x6F, 0x23, true},
+                                                  {0x6F, 0x23, false},
                                                   {0x6F, 0x27, false},
                                                   {0x6F, 0x07, false},
                                                   {0x4F, 0x0F, false},
                                                   {0x4F, 0x08, true}}};
     const Row& row = kRows[static_cast<std::size_t>(drive_->state())];
     must((word & row.mask) == row.value, "the statusword tells the state");
-    must(drive_->brake_engaged() == row.brake,
-         "the brake holds exactly where no demand is followed");
+    must(drive_->brake_engaged() || !row.brake, "the brake is on in a state without power");
   }
 
   std::unique_ptr<Drive402> drive_;

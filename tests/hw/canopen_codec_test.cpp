@@ -78,6 +78,13 @@ TEST(EmergencyCodec, DecodesCodeRegisterAndVendorBytes) {
   EXPECT_STREQ(emergency_text(0x8611), "following error");
 }
 
+TEST(EmergencyCodec, ACodeThatNoStandardNamesGetsNoWords) {
+  EXPECT_STREQ(emergency_text(0x3210), "DC link over-voltage");
+  EXPECT_EQ(emergency_text(0x3299), nullptr);
+  EXPECT_EQ(emergency_text(0x8699), nullptr);
+  EXPECT_EQ(emergency_text(0xFF01), nullptr);
+}
+
 TEST(EmergencyCodec, SyncAndShortFramesAreNone) {
   EXPECT_FALSE(decode_emergency(golden("080#1186200000000000")));
   EXPECT_FALSE(decode_emergency(golden("083#118620")));

@@ -73,6 +73,17 @@ TEST(Enabling, ControlwordForEveryStateAndRequest) {
   }
 }
 
+TEST(Enabling, ADriveHasFollowedOnceNothingIsLeftToCommand) {
+  for (const Expectation& row : kExpected) {
+    const DriveState state = row.state;
+    const bool off = state == DriveState::kSwitchOnDisabled || state == DriveState::kFault;
+    EXPECT_EQ(has_followed(state, ArmRequest::kEnabled), state == DriveState::kOperationEnabled);
+    EXPECT_EQ(has_followed(state, ArmRequest::kDisabled), off);
+    EXPECT_EQ(has_followed(state, ArmRequest::kQuickStop),
+              off || state == DriveState::kQuickStopActive);
+  }
+}
+
 TEST(Enabling, FaultIsResetByRisingEdgesOnly) {
   std::uint16_t controlword = 0x0F;
   for (const int expected : {0x80, 0x00, 0x80, 0x00}) {

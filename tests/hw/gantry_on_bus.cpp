@@ -49,7 +49,7 @@ bool GantryOnBus::prepare(int limit_ms) {
     if (arm.state() == ArmState::kFault) return false;
     step_nodes();
     now_ns += 1'000'000;
-    bus.set_time(now_ns);
+    bus.advance(now_ns);
   }
   return false;
 }
@@ -60,7 +60,7 @@ bool GantryOnBus::cycle(ArmRequest request, const JointVector& position) {
   const bool complete = arm.receive(now_ns + 500'000, feedback);
   arm.command(now_ns + 600'000, request, position);
   now_ns += 2'000'000;
-  bus.set_time(now_ns);
+  bus.advance(now_ns);
   return complete;
 }
 

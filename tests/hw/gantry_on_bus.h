@@ -1,6 +1,6 @@
 #pragma once
-// A CanopenArm and the scripted nodes of a three-axis gantry on one in-process bus, in virtual
-// time.
+// A CanopenArm and the scripted nodes of a three-axis gantry on one virtual bus, on which
+// frames take no time.
 //
 //   step 1 ms: master | nodes | master | ...     cycle 2 ms: SYNC | nodes | receive | command
 
@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "hw/can/in_process_bus.h"
 #include "hw/canopen_arm.h"
 #include "shared/cell/robot.h"
+#include "sim/bus/virtual_bus.h"
 #include "tests/hw/scripted_node.h"
 
 namespace tenon::hw {
@@ -33,7 +33,7 @@ class GantryOnBus {
   void step_nodes();
 
   Robot robot;
-  InProcessBus bus;
+  sim::VirtualBus bus{{.bitrate_bps = 0}};
   CanBus& master;
   CanopenArm arm;
   std::vector<std::unique_ptr<ScriptedNode>> nodes;  ///< x, y, z, sensor

@@ -38,10 +38,14 @@ void ScriptedNode::reset_communication() {
     objects[0x200200] = {2, 0};
     return;
   }
-  objects[0x140001] = {4, 0x200u + node_};
-  objects[0x140002] = {1, 255};
-  objects[0x160000] = {1, 0};
-  objects[0x160001] = objects[0x160002] = {4, 0};
+  for (unsigned k = 0; k < 2; ++k) {
+    const std::uint32_t off = k == 0 ? 0 : 0x80000000u;
+    objects[0x140001 + (k << 8)] = {4, off | (0x200u + 0x100u * k + node_)};
+    objects[0x140002 + (k << 8)] = {1, 255};
+    objects[0x160000 + (k << 8)] = {1, 0};
+    objects[0x160001 + (k << 8)] = objects[0x160002 + (k << 8)] = {4, 0};
+  }
+  pending_ = {};
   objects[0x180101] = {4, 0x280u + node_};  // a second TPDO that is on by default
   objects[0x101601] = objects[0x100600] = {4, 0};
   objects[0x600700] = objects[0x605A00] = objects[0x605B00] = objects[0x605C00] = {2, 0};
@@ -65,9 +69,8 @@ void ScriptedNode::step(std::int64_t now_ns) {
     if (frame.id == 0x000) on_nmt(frame);
     if (frame.id == 0x080 && nmt_state == 0x05) on_sync();
     if (frame.id == 0x600u + node_) on_sdo(frame);
-    if (frame.id == 0x200u + node_ && nmt_state == 0x05) {
-      pending_command_ = frame;
-      commands.push_back(frame);
+    for (unsigned k = 0; kind_ == Kind::kDrive && nmt_state == 0x05 && k < 2; ++k) {
+      if (frame.id == objects[0x140001 + (k << 8)].value) on_rpdo(k, frame);
     }
   }
   const std::int64_t period_ns = objects[0x101700].value * 1'000'000LL;
@@ -131,40 +134,95 @@ void ScriptedNode::answer(std::uint8_t command, const CanFrame& request, std::ui
                         byte(value, 1), byte(value, 2), byte(value, 3)});
 }
 
+void ScriptedNode::on_rpdo(unsigned number, const CanFrame& frame) {
+  commands.push_back(frame);
+  if (objects[0x140002 + (number << 8)].value > 240) return act(number, frame);
+  pending_[number] = frame;
+}
+
+void ScriptedNode::act(unsigned number, const CanFrame& frame) {
+  const std::uint16_t before = controlword;
+  std::size_t at = 0;
+  for (unsigned sub = 1; sub <= objects[0x160000 + (number << 8)].value; ++sub) {
+    switch (objects[0x160000 + (number << 8) + sub].value) {
+      case 0x60400010:
+        controlword = static_cast<std::uint16_t>(frame.data[at] | frame.data[at + 1] * 0x100);
+        obey(before);
+        at += 2;
+        break;
+      case 0x607A0020:
+      case 0x60C10120:
+        target_counts = static_cast<std::int32_t>(u32(frame, at));
+        at += 4;
+        break;
+      case 0x00040020:  // somebody else's
+        at += 4;
+        break;
+    }
+  }
+}
+
 void ScriptedNode::on_sync() {
   if (kind_ == Kind::kSensor) {
-    for (unsigned half = 0; answers_sync && half < 2; ++half) {
-      if (half == 0 || tears)
-        sample_counter = static_cast<std::uint16_t>(sample_counter + samples_per_sync);
-      std::vector<std::uint8_t> bytes;
-      for (unsigned i = 0; i < 3; ++i) {
-        const auto bits = static_cast<std::uint16_t>(wrench_counts[3 * half + i]);
-        bytes.push_back(byte(bits, 0));
-        bytes.push_back(byte(bits, 1));
-      }
-      bytes.push_back(byte(sample_counter, 0));
-      bytes.push_back(byte(sample_counter, 1));
-      send(objects[0x180001 + (half << 8)].value & 0x7FF, bytes);
-    }
+    if (answers_sync) send_wrench();
     return;
   }
-  run_drive();
-  if (!answers_sync) return;
-  const auto position = static_cast<std::uint32_t>(position_counts);
-  const auto torque = static_cast<std::uint16_t>(torque_permille);
-  std::vector<std::uint8_t> bytes{byte(statusword, 0), byte(statusword, 1), byte(position, 0),
-                                  byte(position, 1),   byte(position, 2),   byte(position, 3),
-                                  byte(torque, 0),     byte(torque, 1)};
+  for (unsigned k = 0; k < 2; ++k) {
+    if (pending_[k]) act(k, *pending_[k]);
+    pending_[k].reset();
+  }
+  if (follows && follows_targets()) position_counts = target_counts;
+  if (answers_sync) send_feedback();
+}
+
+void ScriptedNode::send_wrench() {
+  for (unsigned half = 0; half < 2; ++half) {
+    if (half == 0 || tears) {
+      sample_counter = static_cast<std::uint16_t>(sample_counter + samples_per_sync);
+    }
+    std::vector<std::uint8_t> bytes;
+    for (unsigned i = 0; i < 3; ++i) {
+      const auto bits = static_cast<std::uint16_t>(wrench_counts[3 * half + i]);
+      bytes.push_back(byte(bits, 0));
+      bytes.push_back(byte(bits, 1));
+    }
+    bytes.push_back(byte(sample_counter, 0));
+    bytes.push_back(byte(sample_counter, 1));
+    send(objects[0x180001 + (half << 8)].value & 0x7FF, bytes);
+  }
+}
+
+void ScriptedNode::send_feedback() {
+  std::vector<std::uint8_t> bytes;
+  const auto append = [&bytes](std::uint32_t value, unsigned count) {
+    for (unsigned i = 0; i < count; ++i) bytes.push_back(byte(value, i));
+  };
+  for (unsigned sub = 1; sub <= objects[0x1A0000].value; ++sub) {
+    switch (objects[0x1A0000 + sub].value) {
+      case 0x60410010: {
+        const bool interpolates = objects[0x606100].value == 7 && follows_targets();
+        append(statusword | (interpolates ? 0x1000u : 0u), 2);
+        break;
+      }
+      case 0x60640020:
+        append(static_cast<std::uint32_t>(position_counts), 4);
+        break;
+      case 0x60770010:
+        append(static_cast<std::uint16_t>(torque_permille), 2);
+        break;
+    }
+  }
   bytes.resize(tpdo_bytes);
   send(objects[0x180001].value & 0x7FF, bytes);
 }
 
-void ScriptedNode::run_drive() {
-  if (!pending_command_) return;
-  const std::uint16_t before = controlword;
-  controlword =
-      static_cast<std::uint16_t>(pending_command_->data[0] | pending_command_->data[1] * 0x100);
-  target_counts = static_cast<std::int32_t>(u32(*pending_command_, 2));
+bool ScriptedNode::follows_targets() const {
+  const bool interpolated = objects.at(0x606100).value == 7;
+  return statusword == 0x0237 && (!interpolated || (controlword & 0x10) != 0);
+}
+
+/// A controlword has arrived.
+void ScriptedNode::obey(std::uint16_t before) {
   if (stuck) return;
   const bool reset = (controlword & 0x80) != 0 && (before & 0x80) == 0;
   switch (statusword) {
@@ -183,7 +241,6 @@ void ScriptedNode::run_drive() {
       if (controlword == 0x06) statusword = 0x0231;
       break;
     case 0x0237:  // operation enabled
-      if (follows && controlword == 0x0F) position_counts = target_counts;
       if (controlword == 0x07) statusword = 0x0233;
       if (controlword == 0x02) statusword = 0x0217;
       break;

@@ -39,14 +39,14 @@ class ScriptedNode {
   std::vector<Write> writes;  ///< in the order of arrival
   std::uint8_t nmt_state = 0x7F;
   std::uint16_t statusword = 0x0250;
-  std::uint16_t controlword = 0;  ///< as of the last SYNC
+  std::uint16_t controlword = 0;  ///< as it acts
   std::int32_t position_counts = 0;
-  std::int32_t target_counts = 0;  ///< as of the last SYNC
+  std::int32_t target_counts = 0;  ///< as it acts
   std::int16_t torque_permille = 0;
   std::array<std::int16_t, 6> wrench_counts{};
   std::uint16_t sample_counter = 0;
   int samples_per_sync = 1;
-  std::vector<CanFrame> commands;  ///< RPDOs as they came
+  std::vector<CanFrame> commands;  ///< RPDOs as they came, of both numbers
 
   // Knobs.
   bool dead = false;  ///< neither hears nor speaks
@@ -64,16 +64,21 @@ class ScriptedNode {
  private:
   void on_nmt(const CanFrame& frame);
   void on_sdo(const CanFrame& frame);
+  void on_rpdo(unsigned number, const CanFrame& frame);
+  void act(unsigned number, const CanFrame& frame);
   void on_sync();
+  void send_wrench();
+  void send_feedback();
   void answer(std::uint8_t command, const CanFrame& request, std::uint32_t value);
-  void run_drive();
+  void obey(std::uint16_t before);
+  [[nodiscard]] bool follows_targets() const;
   void reset_communication();
 
   Kind kind_;
   std::uint8_t node_;
   CanBus& bus_;
   std::int64_t next_heartbeat_ns_ = 0;
-  std::optional<CanFrame> pending_command_;
+  std::array<std::optional<CanFrame>, 2> pending_;  ///< synchronous RPDOs since the last SYNC
 };
 
 }  // namespace tenon::hw

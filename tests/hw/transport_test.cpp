@@ -9,15 +9,17 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstring>
 #include <fstream>
 #include <memory>
+#include <random>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hw/can/candump_log.h"
 #include "hw/can/endpoints.h"
-#include "hw/can/in_process_bus.h"
 #include "hw/can/open_bus.h"
 #include "hw/can/recording_bus.h"
 #include "hw/can/slcan_client.h"
@@ -25,6 +27,7 @@
 #include "hw/can/slcan_stream.h"
 #include "hw/can/socketcan_errors.h"
 #include "shared/base/error.h"
+#include "sim/bus/virtual_bus.h"
 
 namespace tenon::hw {
 namespace {
@@ -38,54 +41,6 @@ bool receive_soon(CanBus& bus, ReceivedFrame& received) {
     bus.wait(10'000'000);
   }
   return false;
-}
-
-TEST(InProcessBus, AFrameReachesAllOtherEndsInOrderWithVirtualTime) {
-  InProcessBus bus;
-  CanBus& a = bus.attach();
-  CanBus& b = bus.attach();
-  CanBus& c = bus.attach();
-  bus.set_time(42);
-  EXPECT_EQ(a.send(frame_of(1, 10)), SendResult::kSent);
-  EXPECT_EQ(a.send(frame_of(2, 20)), SendResult::kSent);
-  ReceivedFrame received;
-  for (CanBus* end : {&b, &c}) {
-    ASSERT_TRUE(end->receive(received));
-    EXPECT_EQ(received.frame, frame_of(1, 10));
-    EXPECT_EQ(received.time_ns, 42);
-    ASSERT_TRUE(end->receive(received));
-    EXPECT_EQ(received.frame, frame_of(2, 20));
-    EXPECT_FALSE(end->receive(received));
-  }
-  EXPECT_FALSE(a.receive(received));
-}
-
-TEST(InProcessBus, FilterMayLoseAndAlterFrames) {
-  InProcessBus bus;
-  CanBus& a = bus.attach();
-  CanBus& b = bus.attach();
-  bus.set_filter([](CanFrame& frame, std::size_t from) {
-    EXPECT_EQ(from, 0u);
-    frame.data[0] = 99;
-    return frame.id != 1;
-  });
-  EXPECT_EQ(a.send(frame_of(1, 1)), SendResult::kSent);
-  EXPECT_EQ(a.send(frame_of(2, 2)), SendResult::kSent);
-  ReceivedFrame received;
-  ASSERT_TRUE(b.receive(received));
-  EXPECT_EQ(received.frame, frame_of(2, 99));
-  EXPECT_FALSE(b.receive(received));
-}
-
-TEST(InProcessBus, FullQueueLosesTheNewestAndCounts) {
-  InProcessBus bus(2);
-  CanBus& a = bus.attach();
-  CanBus& b = bus.attach();
-  for (std::uint8_t i = 0; i < 3; ++i) EXPECT_EQ(a.send(frame_of(1, i)), SendResult::kSent);
-  EXPECT_EQ(b.status().overruns, 1u);
-  ReceivedFrame received;
-  ASSERT_TRUE(b.receive(received));
-  EXPECT_EQ(received.frame.data[0], 0);
 }
 
 /// A server and clients with open channels on a free port.
@@ -223,10 +178,11 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
+  /// Sends a text and reads until `expected` characters are there, for a bounded time.
   std::string exchange(CanBus& server, const std::string& text, std::size_t expected) {
     EXPECT_EQ(::send(descriptor_, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
     std::string answer;
-    for (int i = 0; i < 200 && answer.size() < expected; ++i) {
+    for (int i = 0; i < 20 && (i == 0 || answer.size() < expected); ++i) {
       server.wait(1'000'000);
       ReceivedFrame received;
       while (server.receive(received)) frames.push_back(received.frame);
@@ -237,24 +193,102 @@ class Terminal {
     return answer;
   }
 
+  /// Reads whatever is on the way.
+  void discard(CanBus& server) {
+    std::vector<char> buffer(1 << 16);
+    while (::recv(descriptor_, buffer.data(), buffer.size(), MSG_DONTWAIT) > 0) server.wait(0);
+  }
+
   std::vector<CanFrame> frames;
 
  private:
   int descriptor_;
 };
 
-TEST(SlcanServer, AnswersCommandsAndRefusesFramesOnAClosedChannel) {
+TEST(SlcanServer, AnswersEachLineAsAnAdapterDoes) {
   Loopback loopback;
   Terminal terminal(listening_port(*loopback.server));
-  EXPECT_EQ(terminal.exchange(*loopback.server, "V\r", 6), "V1013\r");
-  EXPECT_EQ(terminal.exchange(*loopback.server, "N\r", 6), "NTENO\r");
-  EXPECT_EQ(terminal.exchange(*loopback.server, "t1230\r", 1), "\a");
-  EXPECT_EQ(terminal.exchange(*loopback.server, "S8\rO\rF\r", 6), "\r\rF00\r");
-  EXPECT_TRUE(terminal.frames.empty());
-  EXPECT_EQ(terminal.exchange(*loopback.server, "t1230\rnonsense\rC\r", 1), "\r");
-  ASSERT_EQ(terminal.frames.size(), 1u);
-  EXPECT_EQ(terminal.frames[0].id, 0x123u);
-  EXPECT_EQ(loopback.server->status().malformed, 1u);
+  const std::pair<const char*, const char*> exchanges[] = {
+      {"V\r", "V1013\r"},      {"N\r", "NTENO\r"},      {"C\r", "\a"},  // closed already
+      {"t1230\r", "\a"},                                                // on a closed channel
+      {"F\r", "\a"},                                                    // of a closed channel
+      {"S9\r", "\a"},                                                   // there are S0 to S8
+      {"S8\r", "\r"},          {"s031C\r", "\r"},       {"Z0\r", "\r"},
+      {"O\r", "\r"},           {"O\r", "\a"},  // open already
+      {"S6\r", "\a"},                          // too late
+      {"t1230\r", "z\r"},      {"T000001230\r", "Z\r"}, {"r1234\r", "z\r"},
+      {"R000001234\r", "Z\r"}, {"t1239\r", "\a"},  // no frame has nine bytes
+      {"nonsense\r", "\a"},    {"P\r", "\a"},      // polling is not needed
+      {"F\r", "F00\r"},        {"C\r", "\r"},           {"L\r", "\r"},
+      {"t1230\r", "\a"},  // only listens
+      {"C\r", "\r"},
+  };
+  for (const auto& [line, answer] : exchanges) {
+    EXPECT_EQ(terminal.exchange(*loopback.server, line, std::strlen(answer)), answer) << line;
+  }
+  ASSERT_EQ(terminal.frames.size(), 4u);
+  EXPECT_EQ(terminal.frames[0], (CanFrame{0x123, false, false, 0, {}}));
+  EXPECT_EQ(terminal.frames[3], (CanFrame{0x123, true, true, 4, {}}));
+  EXPECT_EQ(terminal.exchange(*loopback.server, "V\rrubbish\rS8\rO\r", 9), "V1013\r\a\r\r")
+      << "in order, also where they come together";
+  EXPECT_EQ(loopback.server->status().malformed, 3u);
+}
+
+TEST(SlcanServer, StampsFramesForWhoAsksForIt) {
+  Loopback loopback;
+  Terminal terminal(listening_port(*loopback.server));
+  EXPECT_EQ(terminal.exchange(*loopback.server, "Z1\rO\r", 2), "\r\r");
+  EXPECT_EQ(loopback.server->send(frame_of(0x190, 7)), SendResult::kSent);
+  const std::string line = terminal.exchange(*loopback.server, "", 12);
+  ASSERT_EQ(line.size(), 12u) << line;
+  EXPECT_EQ(line.substr(0, 7), "t190107");
+  EXPECT_LT(std::stoul(line.substr(7, 4), nullptr, 16), 60'000u);
+}
+
+TEST(SlcanServer, RubbishFromOneClientNeverDisturbsTheOthers) {
+  Loopback loopback;
+  Terminal vandal(listening_port(*loopback.server));
+  const auto client = loopback.connect();
+  std::mt19937 random(3);
+  ReceivedFrame received;
+  for (std::uint8_t i = 0; i < 100; ++i) {
+    std::string rubbish;
+    for (int k = 0; k < 200; ++k) rubbish += static_cast<char>(random());
+    (void)vandal.exchange(*loopback.server, rubbish, 0);
+    ASSERT_EQ(client->send(frame_of(0x123, i)), SendResult::kSent);
+    client->wait(0);
+    ASSERT_TRUE(receive_soon(*loopback.server, received));
+    ASSERT_EQ(received.frame, frame_of(0x123, i));
+    ASSERT_EQ(loopback.server->send(frame_of(0x190, i)), SendResult::kSent);
+    loopback.server->wait(0);
+    ASSERT_TRUE(receive_soon(*client, received));
+    ASSERT_EQ(received.frame, frame_of(0x190, i));
+  }
+  EXPECT_TRUE(vandal.frames.empty());
+  EXPECT_GT(loopback.server->status().malformed, 10u);
+  EXPECT_EQ(client->status().malformed, 0u);
+  EXPECT_EQ(client->status().error_frames, 0u) << "nothing of ours was refused";
+}
+
+TEST(SlcanServer, ASlowReaderLosesCountedFramesAndTheOthersNone) {
+  Loopback loopback;
+  Terminal sleeper(listening_port(*loopback.server));
+  EXPECT_EQ(sleeper.exchange(*loopback.server, "O\r", 1), "\r");
+  const auto client = loopback.connect();
+  ReceivedFrame received;
+  const CanFrame frame{0x1ABCDEF0, true, false, 8, {1, 2, 3, 4, 5, 6, 7, 8}};
+  for (int burst = 0; loopback.server->status().send_failures < 100 && burst < 10'000; ++burst) {
+    for (int i = 0; i < 100; ++i) {
+      ASSERT_EQ(loopback.server->send(frame), SendResult::kSent) << "the client takes it";
+    }
+    loopback.server->wait(0);
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(receive_soon(*client, received));
+    ASSERT_EQ(received.frame, frame);
+  }
+  EXPECT_GE(loopback.server->status().send_failures, 100u);
+  // Once it reads again it is told, once.
+  sleeper.discard(*loopback.server);
+  EXPECT_EQ(sleeper.exchange(*loopback.server, "F\rF\r", 8), "F08\rF00\r");
 }
 
 TEST(SlcanOverSerial, OpensTheChannelAndExchangesFramesOverAPty) {
@@ -379,13 +413,13 @@ TEST(CandumpLog, LinesAreCandumps) {
 std::int64_t fixed_clock() noexcept { return 2'000'000'000; }
 
 TEST(RecordingBus, EveryFrameThatPassedIsInTheLog) {
-  InProcessBus bus;
+  sim::VirtualBus bus{{.bitrate_bps = 0}};
   CanBus& end = bus.attach();
   CanBus& other = bus.attach();
   const auto ring = std::make_unique<CanRecordRing>();
   RecordingBus recording(end, *ring, &fixed_clock);
   EXPECT_EQ(recording.send(frame_of(0x201, 1)), SendResult::kSent);
-  bus.set_time(3'000'000'000);
+  bus.advance(3'000'000'000);
   EXPECT_EQ(other.send(frame_of(0x190, 2)), SendResult::kSent);
   ReceivedFrame received;
   EXPECT_TRUE(recording.receive(received));

@@ -15,10 +15,12 @@ using State = Drive402::State;
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kStep_ns = 500'000;
 
-/// One drive, SYNC every 2 ms, and a plant that is where the demand is unless it is stuck.
-class DriveBench {
+/// One drive whose brake is quick, SYNC every 2 ms, and a plant that is where the demand is unless
+/// it is stuck.
+class LiteralDrive {
  public:
-  explicit DriveBench(std::int8_t mode = 8) : drive({.node = 1, .mode = mode}) {
+  explicit LiteralDrive(std::int8_t mode = 8)
+      : drive({.node = 1, .mode = mode, .brake_release_s = 0.0, .brake_engage_s = 0.0}) {
     drive.node().power_on(0);
     pass(10);
     write({0x2B, 0x07, 0x60, 0, 3, 0, 0, 0});           // 6007h = 3
@@ -81,6 +83,7 @@ class DriveBench {
     control(0x06);
     control(0x07);
     control(0x0F);
+    pass(1);
     ASSERT_EQ(drive.state(), State::kOperationEnabled);
   }
   /// A ramp of one target a SYNC.
@@ -113,7 +116,7 @@ TEST(Drive402Test, IsNotReadyUntilItsSelfTestIsOver) {
 }
 
 TEST(Drive402Test, WalksToOperationEnabledAndBackWithTheStatuswordsOfTheStandard) {
-  DriveBench bench;
+  LiteralDrive bench;
   EXPECT_EQ(bench.status() & 0x4F, 0x40);
   bench.control(0x0F);  // no short cut from switch on disabled
   EXPECT_EQ(bench.status() & 0x4F, 0x40);
@@ -123,6 +126,7 @@ TEST(Drive402Test, WalksToOperationEnabledAndBackWithTheStatuswordsOfTheStandard
   EXPECT_EQ(bench.status() & 0x6F, 0x23);
   EXPECT_TRUE(bench.drive.brake_engaged());
   bench.control(0x0F);
+  bench.pass(1);
   EXPECT_EQ(bench.status() & 0x6F, 0x27);
   EXPECT_EQ(bench.status() & 0x1210, 0x1210);  // follows, remote, voltage
   EXPECT_FALSE(bench.drive.brake_engaged());
@@ -130,6 +134,7 @@ TEST(Drive402Test, WalksToOperationEnabledAndBackWithTheStatuswordsOfTheStandard
   EXPECT_EQ(bench.status() & 0x6F, 0x21);
   EXPECT_TRUE(bench.drive.brake_engaged());
   bench.control(0x0F);
+  bench.pass(1);
   EXPECT_EQ(bench.status() & 0x6F, 0x27);
   bench.control(0x00);
   EXPECT_EQ(bench.status() & 0x4F, 0x40);
@@ -137,7 +142,7 @@ TEST(Drive402Test, WalksToOperationEnabledAndBackWithTheStatuswordsOfTheStandard
 }
 
 TEST(Drive402Test, DisablingOperationStopsByARampAndThenBrakes) {
-  DriveBench bench;
+  LiteralDrive bench;
   bench.enable();
   bench.run(50, 200);  // 100,000 counts/s
   bench.control(0x07);
@@ -150,7 +155,7 @@ TEST(Drive402Test, DisablingOperationStopsByARampAndThenBrakes) {
 
 // SYNC 1: target 1000 ──> demand  250  500  750 1000   each half millisecond
 TEST(Drive402Test, TargetsAreInterpolatedAcrossTheSyncPeriod) {
-  DriveBench bench;
+  LiteralDrive bench;
   bench.enable();
   bench.target(1000);
   bench.pass(4);
@@ -165,7 +170,7 @@ TEST(Drive402Test, TargetsAreInterpolatedAcrossTheSyncPeriod) {
 
 // SYNC ──2 ms── (lost) ──2 ms── stop
 TEST(Drive402Test, ALostSyncIsBridgedForOnePeriodAtConstantVelocity) {
-  DriveBench bench;
+  LiteralDrive bench;
   bench.enable();
   bench.target(1000);
   bench.sync();
@@ -177,7 +182,7 @@ TEST(Drive402Test, ALostSyncIsBridgedForOnePeriodAtConstantVelocity) {
 }
 
 TEST(Drive402Test, InterpolatedPositionModeNeedsItsControlBit) {
-  DriveBench bench(7);
+  LiteralDrive bench(7);
   bench.enable();
   bench.write({0x23, 0xC1, 0x60, 1, 0xE8, 0x03, 0, 0});
   bench.sync();
@@ -190,14 +195,14 @@ TEST(Drive402Test, InterpolatedPositionModeNeedsItsControlBit) {
 }
 
 TEST(Drive402Test, AModeThatItLacksIsRefused) {
-  DriveBench bench;
+  LiteralDrive bench;
   EXPECT_EQ(text_of(bench.ask({0x2F, 0x60, 0x60, 0, 7, 0, 0, 0})), "581#8060600030000906");
   EXPECT_EQ(text_of(bench.ask({0x40, 0x02, 0x65, 0, 0, 0, 0, 0})), "581#4302650080000000");
 }
 
 // v = 100,000 counts/s, a = 1,000,000 counts/s^2: 100 ms and v^2 / 2a = 5,000 counts to stop.
 TEST(Drive402Test, QuickStopRampsDownAndHoldsWithTheBrakeOff) {
-  DriveBench bench;
+  LiteralDrive bench;
   bench.enable();
   bench.run(50, 200);
   const double start_counts = bench.plant.position_counts;
@@ -216,7 +221,7 @@ TEST(Drive402Test, QuickStopRampsDownAndHoldsWithTheBrakeOff) {
 }
 
 TEST(Drive402Test, QuickStopWithOptionTwoEndsSwitchedOff) {
-  DriveBench bench;
+  LiteralDrive bench;
   bench.write({0x2B, 0x5A, 0x60, 0, 2, 0, 0, 0});
   bench.enable();
   bench.run(50, 200);
@@ -227,7 +232,7 @@ TEST(Drive402Test, QuickStopWithOptionTwoEndsSwitchedOff) {
 }
 
 TEST(Drive402Test, FollowingErrorFaultsAndOnlyARisingEdgeResets) {
-  DriveBench bench;
+  LiteralDrive bench;
   bench.write({0x23, 0x65, 0x60, 0, 0x88, 0x13, 0, 0});  // 5,000 counts
   bench.write({0x2B, 0x66, 0x60, 0, 10, 0, 0, 0});       // for 10 ms
   bench.enable();
@@ -252,7 +257,7 @@ TEST(Drive402Test, FollowingErrorFaultsAndOnlyARisingEdgeResets) {
 }
 
 TEST(Drive402Test, AFollowingWindowOfZeroIsOff) {
-  DriveBench bench;
+  LiteralDrive bench;
   bench.enable();
   bench.stuck = true;
   bench.run(100, 300);
@@ -260,7 +265,7 @@ TEST(Drive402Test, AFollowingWindowOfZeroIsOff) {
 }
 
 TEST(Drive402Test, WithOptionOneALostConnectionIsAFaultOnlyWhileEnabled) {
-  DriveBench bench;
+  LiteralDrive bench;
   bench.write({0x2B, 0x07, 0x60, 0, 1, 0, 0, 0});
   bench.control(0x06);
   bench.drive.node().receive(frame_of(0x000, {0x82, 0x01}), bench.now_ns);
@@ -274,7 +279,7 @@ TEST(Drive402Test, WithOptionOneALostConnectionIsAFaultOnlyWhileEnabled) {
 }
 
 TEST(Drive402Test, ALostMasterIsAQuickStopThatEndsWithTheBrakeOn) {
-  DriveBench bench;
+  LiteralDrive bench;
   bench.write({0x23, 0x16, 0x10, 1, 100, 0, 0x7F, 0});  // node 127, 100 ms
   bench.drive.node().receive(frame_of(0x77F, {0x05}), bench.now_ns);
   bench.enable();

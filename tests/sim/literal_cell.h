@@ -33,6 +33,7 @@ inline Cell gantry_cell() {
     joint.acceleration_max = 10.0;
     joint.effort_max = 400.0;
     joint.rated_effort = 200.0;
+    joint.stiffness = 1e6;
     joint.link.mass_kg = masses_kg[static_cast<std::size_t>(axis)];
     cell.robot.joints.push_back(joint);
   }
@@ -164,7 +165,7 @@ class LiteralCell {
     target_counts = position_counts;
     cycles_of(0x06, 2);
     cycles_of(0x07, 2);
-    cycles_of(0x0F, 3);
+    cycles_of(0x0F, 15);  // the brakes open
     return (status[0] & 0x6F) == 0x27 && (status[1] & 0x6F) == 0x27 && (status[2] & 0x6F) == 0x27;
   }
   /// Moves one axis evenly.

@@ -82,6 +82,47 @@ TEST_F(TenonSimTest, EndsByItselfWhenItsOnlyClientHasGone) {
   EXPECT_EQ(sim.process().wait(), 0);
 }
 
+TEST_F(TenonSimTest, DrawsAWorldFromAnExperimentThatOnlyTheTruthTells) {
+  const std::string truth_file = folder.path() / "truth.json";
+  SimProcess sim(folder.path(), "2",
+                 {"--seed", "11", "--json", truth_file, "--experiment",
+                  TENON_SOURCE_DIR "/sim/experiments/box_on_table.yaml"});
+  sim.process().send(SIGINT);
+  EXPECT_EQ(sim.process().wait(), 0);
+  const auto world = nlohmann::json::parse(std::ifstream(truth_file))["world"];
+  EXPECT_GE(world["friction"], 0.1);
+  EXPECT_LE(world["friction"], 0.6);
+  EXPECT_NE(world["task_in_base_error"]["rz_rad"], 0.0);
+  EXPECT_NE(world["backlash_m"], 0.0);
+  EXPECT_EQ(sim.process().out().find("friction"), std::string::npos);
+}
+
+TEST_F(TenonSimTest, CarriesOutFaultsOfDevicesAndBus) {
+  const std::string truth_file = folder.path() / "truth.json";
+  SimProcess sim(folder.path(), "2",
+                 {"--offset", "x_m=0.01", "--json", truth_file, "--fault",
+                  "node-reset:node=2,time_s=0.3", "--fault", "drop:node=1,duration_s=100"});
+  const int connection = connect_to(sim);
+  // Node 2 boots anew; node 1 is not heard.
+  const std::string heard = ask(connection, "O\rt60184000100000000000\r", "t702100");
+  EXPECT_NE(heard.find("t702100"), std::string::npos) << heard;
+  EXPECT_EQ(heard.find("t5818"), std::string::npos) << heard;
+  sim.process().send(SIGINT);
+  EXPECT_EQ(sim.process().wait(), 0);
+  close(connection);
+  const auto truth = nlohmann::json::parse(std::ifstream(truth_file));
+  EXPECT_NE(truth["events"].dump().find("fault node-reset, node 2"), std::string::npos);
+}
+
+TEST_F(TenonSimTest, ListsTheFaultsWithoutAnyOtherOption) {
+  tests::ChildProcess child(folder.path(), {TENON_SIM_EXE, "--fault", "help"});
+  EXPECT_EQ(child.wait(), 0);
+  for (const char* kind : {"drop", "brake-failure", "torque-loss", "encoder-jump", "bus-off"}) {
+    EXPECT_NE(child.out().find(kind), std::string::npos) << kind;
+  }
+  EXPECT_EQ(child.err(), "");
+}
+
 TEST_F(TenonSimTest, BadInputIsOneLineAndStatusTwo) {
   const std::string can = "slcan-listen://127.0.0.1:0";
   const std::vector<std::vector<std::string>> bad = {
@@ -89,6 +130,10 @@ TEST_F(TenonSimTest, BadInputIsOneLineAndStatusTwo) {
       {"--can", can, "--start", "99"},
       {"--can", can, "--offset", "z_m=0.1"},
       {"--can", can, "--offset", "x_m=0.1", "--seed", "1"},
+      {"--can", can, "--fault", "nonsense"},
+      {"--can", can, "--fault", "brake-failure:node=99"},
+      {"--can", can, "--experiment", TENON_SOURCE_DIR "/sim/experiments/box_on_table.yaml"},
+      {"--can", can, "--seed", "1", "--experiment", "missing.yaml"},
       {"--can", "nonsense"},
       {},
   };

@@ -102,10 +102,10 @@ TEST(VirtualCellTest, ThePayloadsWeightIsReadAtRestInTheSensorsAxes) {
   // 0.1 N over the square root of 400 samples is 5 mN; five of them.
   EXPECT_NEAR(wrench[0], 0.0, 0.025);
   EXPECT_NEAR(wrench[1], 0.0, 0.025);
-  EXPECT_NEAR(wrench[2], -0.5 * 9.81, 0.025);
+  EXPECT_NEAR(wrench[2], -0.5 * 9.80665, 0.025);
   // Torque of a weight 20 mm out along x: r x F = (0.02, 0, z) x (0, 0, -mg) = (0, 0.02 mg, 0).
   EXPECT_NEAR(wrench[3], 0.0, 0.002);
-  EXPECT_NEAR(wrench[4], 0.02 * 0.5 * 9.81, 0.002);
+  EXPECT_NEAR(wrench[4], 0.02 * 0.5 * 9.80665, 0.002);
   EXPECT_NEAR(wrench[5], 0.0, 0.002);
 }
 

@@ -9,8 +9,6 @@
 namespace tenon::tests {
 namespace {
 
-constexpr std::int64_t kMillisecond_ns = 1'000'000;
-constexpr std::int64_t kPrepareMax_ns = 20'000'000'000;
 constexpr std::int64_t kRunMax_cycles = 500'000;
 
 sim::VirtualCell::Options world_of(const Lockstep::Options& options) {
@@ -18,6 +16,9 @@ sim::VirtualCell::Options world_of(const Lockstep::Options& options) {
   world.start = options.start;
   world.seed = options.seed;
   world.offset = options.offset;
+  world.faults = options.faults;
+  world.world = options.world;
+  world.faults = options.faults;
   return world;
 }
 
@@ -25,43 +26,36 @@ sim::VirtualCell::Options world_of(const Lockstep::Options& options) {
 
 Lockstep::Lockstep(const Cell& cell, const Task& task, const Plan& plan, const Options& options,
                    executor::CycleSink* sink)
-    : cell_description_(cell),
-      plan_(plan),
-      master_(bus_.attach()),
-      devices_(bus_.attach()),
-      arm_(std::make_unique<hw::CanopenArm>(cell.robot, master_)),
-      controller_(std::make_unique<executor::Controller>(cell, plan, options.controller)),
-      runner_(std::make_unique<executor::CycleRunner>(*arm_, *controller_, sink,
-                                                      executor::CycleRunner::Parameters{})),
-      virtual_cell_(std::make_unique<sim::VirtualCell>(cell, task, world_of(options))) {}
-
-void Lockstep::let_cell_answer(std::int64_t now_ns) {
-  bus_.set_time(now_ns);
-  virtual_cell_->step(now_ns, devices_);
-}
-
-bool Lockstep::prepare() {
-  for (const std::int64_t until_ns = now_ns_ + kPrepareMax_ns; now_ns_ < until_ns;
-       now_ns_ += kMillisecond_ns) {
-    let_cell_answer(now_ns_);
-    if (arm_->prepare(now_ns_)) return true;
-    if (arm_->state() == ArmState::kFault) return false;
+    : cell_description_(cell), plan_(plan) {
+  const Robot& robot = cell.robot;
+  if (options.link == nullptr) {
+    link_ = std::make_unique<sim::VirtualLink>(
+        sim::VirtualBus::Parameters{.bitrate_bps = robot.bitrate_bps,
+                                    .bit_error_rate = options.bit_error_rate,
+                                    .seed = options.seed},
+        robot.master_node);
+    bus_faults_ = std::make_unique<sim::BusFaults>(options.faults, robot.master_node);
+    if (!options.faults.empty()) bus().set_disturbance(bus_faults_.get());
   }
-  return false;
+  sim::Link& link = options.link != nullptr ? *options.link : *link_;
+  const executor::CycleRunner::Parameters loop;
+  arm_ = std::make_unique<hw::CanopenArm>(robot, link.master());
+  controller_ = std::make_unique<executor::Controller>(cell, plan, options.controller);
+  runner_ = std::make_unique<executor::CycleRunner>(*arm_, *controller_, sink, loop);
+  virtual_cell_ = std::make_unique<sim::VirtualCell>(cell, task, world_of(options));
+  time_ = std::make_unique<sim::Lockstep>(
+      *arm_, *virtual_cell_, link,
+      sim::Lockstep::Parameters{.cycle_ns = std::int64_t{1000} * robot.cycle_us,
+                                .feedback_deadline = loop.feedback_deadline});
 }
 
-bool Lockstep::cycle() {
-  now_ns_ += std::int64_t{1000} * cell_description_.robot.cycle_us;
-  bus_.set_time(now_ns_);
-  runner_->begin(now_ns_);   // SYNC
-  let_cell_answer(now_ns_);  // feedback
-  ++cycles_;
-  return runner_->finish(now_ns_);  // decision and setpoints
-}
+bool Lockstep::prepare() { return time_->prepare(); }
+
+bool Lockstep::cycle() { return time_->cycle(*runner_); }
 
 Lockstep::Result Lockstep::run() {
   if (prepare()) {
-    while (cycle() && cycles_ < kRunMax_cycles) {
+    while (cycle() && statistics().cycles < kRunMax_cycles) {
     }
   }
   return result();
@@ -72,15 +66,14 @@ Lockstep::Result Lockstep::result() const {
   result.ending = controller_->ending();
   result.truth = virtual_cell_->truth();
   result.steps = controller_->runner().report_count();
-  result.cycles = cycles_;
+  result.cycles = statistics().cycles;
   const std::string fault = hw::describe(arm_->fault(), cell_description_.robot);
   result.reason = executor::describe(result.ending, plan_, cell_description_, fault);
   return result;
 }
 
 void Lockstep::leave_alone(double duration_s) {
-  const auto until_ns = now_ns_ + static_cast<std::int64_t>(1e9 * duration_s);
-  for (; now_ns_ < until_ns; now_ns_ += kMillisecond_ns) let_cell_answer(now_ns_);
+  time_->leave_alone(static_cast<std::int64_t>(1e9 * duration_s));
 }
 
 Vector6 draw_offset(const Task& task, const Start& start, std::uint64_t seed, double& distance) {

@@ -1,6 +1,7 @@
 #pragma once
-// The whole chain in one process and in virtual time: executor, CANopen master, in-process bus,
-// virtual arm. No thread, no clock, no sleep.
+// The whole chain in one process and in virtual time: executor, CANopen master, virtual bus in its
+// own bit rate, virtual arm. No thread, no clock; no sleep either, unless the ends of a foreign bus
+// are given.
 
 #include <cstdint>
 #include <functional>
@@ -10,11 +11,14 @@
 
 #include "executor/controller.h"
 #include "executor/cycle_runner.h"
-#include "hw/can/in_process_bus.h"
 #include "hw/canopen_arm.h"
 #include "shared/cell/cell.h"
 #include "shared/plan/plan.h"
 #include "shared/task/task.h"
+#include "sim/faults/bus_faults.h"
+#include "sim/faults/fault.h"
+#include "sim/lockstep/lockstep.h"
+#include "sim/lockstep/virtual_link.h"
 #include "sim/virtual_arm/virtual_cell.h"
 
 namespace tenon::tests {
@@ -27,6 +31,10 @@ class Lockstep {
     std::uint64_t seed = 1;
     Vector6 offset = Vector6::Zero();
     executor::Controller::Parameters controller;
+    double bit_error_rate = 0.0;
+    std::vector<sim::Fault> faults;  ///< of the bus and of devices
+    sim::WorldDraw world;
+    sim::Link* link = nullptr;  ///< in place of the virtual bus; must outlive the run
   };
   struct Result {
     executor::Ending ending;
@@ -51,27 +59,25 @@ class Lockstep {
   /// Virtual time goes on without the executor: what a killed process looks like from the bus.
   void leave_alone(double duration_s);
 
-  [[nodiscard]] hw::InProcessBus& bus() { return bus_; }
+  /// Not where another link was given.
+  [[nodiscard]] sim::VirtualBus& bus() { return link_->bus(); }
+  [[nodiscard]] const sim::Lockstep::Statistics& statistics() const { return time_->statistics(); }
   [[nodiscard]] hw::CanopenArm& arm() { return *arm_; }
   [[nodiscard]] executor::Controller& controller() { return *controller_; }
   [[nodiscard]] executor::CycleRunner& runner() { return *runner_; }
   [[nodiscard]] sim::VirtualCell& cell() { return *virtual_cell_; }
-  [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
+  [[nodiscard]] std::int64_t now_ns() const { return time_->now_ns(); }
 
  private:
-  void let_cell_answer(std::int64_t now_ns);
-
   Cell cell_description_;
   Plan plan_;
-  hw::InProcessBus bus_;
-  CanBus& master_;
-  CanBus& devices_;
+  std::unique_ptr<sim::VirtualLink> link_;
+  std::unique_ptr<sim::BusFaults> bus_faults_;
   std::unique_ptr<hw::CanopenArm> arm_;
   std::unique_ptr<executor::Controller> controller_;
   std::unique_ptr<executor::CycleRunner> runner_;
   std::unique_ptr<sim::VirtualCell> virtual_cell_;
-  std::int64_t now_ns_ = 0;
-  std::int64_t cycles_ = 0;
+  std::unique_ptr<sim::Lockstep> time_;
 };
 
 /// An offset of the environment: normal with the start's sigma on every search coordinate. Its

@@ -1,0 +1,57 @@
+#pragma once
+// Where a plan's tool can be, as boxes of displacements from the plan's start: every step's box
+// grows out of its predecessors' by the envelopes that validation saw. Set-up code; allocates.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "shared/plan/plan.h"
+
+namespace tenon::executor {
+
+/// Displacements from the plan's start, m and rad, task axes.
+struct ReachBox {
+  Vector6 low = Vector6::Zero();
+  Vector6 high = Vector6::Zero();
+
+  void include(const ReachBox& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
+  [[nodiscard]] ReachBox moved(const Vector6& least, const Vector6& most) const {
+    return {low + least, high + most};
+  }
+  [[nodiscard]] Vector6 centre() const { return 0.5 * (low + high); }
+  /// The corner that is high on the axes of a bit pattern and low on the others.
+  [[nodiscard]] Vector6 corner(unsigned pattern) const {
+    Vector6 corner = low;
+    for (int axis = 0; axis < 6; ++axis) {
+      if ((pattern >> axis & 1U) != 0) corner[axis] = high[axis];
+    }
+    return corner;
+  }
+  /// Axes along which the box has an extent.
+  [[nodiscard]] unsigned extent() const {
+    unsigned axes = 0;
+    for (int axis = 0; axis < 6; ++axis) axes |= (high[axis] > low[axis] ? 1U : 0U) << axis;
+    return axes;
+  }
+};
+
+struct StepReach {
+  ReachBox begin;
+  struct End {
+    Successor successor = kSuccessorFail;
+    ReachBox box;
+  };
+  std::vector<End> ends;    ///< of every outcome that has a way on
+  ReachBox swept;           ///< around begin and ends
+  ContactSignature before;  ///< contacts that the tool may hold as the step begins
+};
+
+/// By step; empty where no way leads there. A plan without envelopes can end anywhere along its
+/// commands.
+[[nodiscard]] std::vector<std::optional<StepReach>> reach_of(const Plan& plan);
+
+}  // namespace tenon::executor

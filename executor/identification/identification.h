@@ -1,0 +1,36 @@
+#pragma once
+// One identification from its option to its report: which motion, and what came of it in words.
+// tenon-exec runs the motion. Set-up code; allocates.
+
+#include <memory>
+#include <string>
+
+#include "executor/identification/identification_motion.h"
+#include "executor/identification/identify_contact_motion.h"
+#include "executor/identification/identify_payload_motion.h"
+#include "shared/cell/cell.h"
+
+namespace tenon::executor {
+
+class Identification {
+ public:
+  virtual ~Identification() = default;
+  Identification() = default;
+  Identification(const Identification&) = delete;
+  Identification& operator=(const Identification&) = delete;
+
+  [[nodiscard]] virtual IdentificationMotion& motion() = 0;
+  /// Once the motion is finished and nothing ended it.
+  [[nodiscard]] virtual std::string report() const = 0;
+  /// It found what it was made for.
+  [[nodiscard]] virtual bool found() const = 0;
+};
+
+[[nodiscard]] std::unique_ptr<Identification> make_payload_identification(const Cell& cell);
+
+/// @param direction x, +x or -x, likewise y and z: the way to the contact, in the task frame
+/// @throws InputError for any other
+[[nodiscard]] std::unique_ptr<Identification> make_contact_identification(
+    const Cell& cell, const std::string& direction);
+
+}  // namespace tenon::executor

@@ -1,0 +1,76 @@
+#pragma once
+// The motion of a contact identification. Slowly along one axis until something is met, a first
+// slow press that tells how stiff it is, then a wave of presses and releases between two forces at
+// a speed to match, and back to where it began. The tool is commanded rigidly, without compliance:
+// what answers is the arm and the contact.
+//
+//   force   ............................/\../\/\/\/\/\/\..............   kForceHigh_N
+//   phase   tare   approach      first press     wave        retreat
+
+#include <vector>
+
+#include "executor/identification/identification_motion.h"
+#include "executor/identification/identify_contact.h"
+#include "executor/sensor_tare.h"
+#include "shared/motion/motion_profile.h"
+
+namespace tenon::executor {
+
+class IdentifyContactMotion : public IdentificationMotion {
+ public:
+  struct Parameters {
+    int axis = 0;           ///< x y z of the task frame
+    int sign = 1;           ///< which way along it
+    double reach_m = 0.05;  ///< gives up where nothing has been met
+    double approach_mps = 2e-3;
+    double press_mps = 5e-4;  ///< of the first press
+    double force_low_N = 6.0;
+    double force_high_N = 20.0;
+    double half_wave_s = 0.4;
+    int half_waves = 16;
+    int tare_samples = 200;
+  };
+
+  enum class Phase : std::uint8_t {
+    kTaring = 0,
+    kApproaching = 1,
+    kPressing = 2,
+    kWaving = 3,
+    kRetreating = 4,
+  };
+
+  IdentifyContactMotion(const Cell& cell, const Parameters& parameters);
+
+  /// The recorded wave.
+  [[nodiscard]] const std::vector<PressSample>& samples() const { return samples_; }
+  /// False: nothing was met within reach.
+  [[nodiscard]] bool met() const { return met_; }
+
+ private:
+  void begin() override;
+  bool act(const ArmFeedback& feedback) override;
+  void tare(const ArmFeedback& feedback);
+  void press();
+  void wave();
+  void start_retreat();
+  void advance(double speed_mps);
+  /// Of the contact, positive against the way.
+  [[nodiscard]] double force_N() const;
+
+  Parameters parameters_;
+  SensorTare sensor_tare_;
+  Phase phase_ = Phase::kTaring;
+  bool met_ = false;
+  Pose first_;
+  double depth_m_ = 0.0;  ///< commanded way from first_
+  double low_m_ = -1.0;   ///< depth at which the first press passed force_low
+  double wave_mps_ = 0.0;
+  double direction_ = 1.0;
+  int half_waves_ = 0;
+  MotionProfile retreat_;
+  double retreat_from_m_ = 0.0;
+  double retreat_s_ = 0.0;
+  std::vector<PressSample> samples_;
+};
+
+}  // namespace tenon::executor

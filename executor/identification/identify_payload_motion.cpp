@@ -1,0 +1,91 @@
+#include "executor/identification/identify_payload_motion.h"
+
+#include <algorithm>
+
+namespace tenon::executor {
+namespace {
+
+constexpr std::size_t kTurnedJoints = 3;
+constexpr double kLimitMargin_rad = 0.1;
+constexpr double kGravity_mps2 = 9.80665;
+
+// The last joints that turn, outermost first.
+std::vector<std::size_t> last_turning(const Robot& robot) {
+  std::vector<std::size_t> joints;
+  for (std::size_t i = robot.joints.size(); i-- > 0 && joints.size() < kTurnedJoints;) {
+    if (robot.joints[i].kind == Joint::Kind::kRevolute) joints.push_back(i);
+  }
+  return joints;
+}
+
+}  // namespace
+
+IdentifyPayloadMotion::IdentifyPayloadMotion(const Cell& cell, const Parameters& parameters)
+    : IdentificationMotion(cell),
+      parameters_(parameters),
+      reading_(SensorTare::parameters_for(cell.robot.sensor, parameters.samples)) {
+  const std::size_t corners = std::size_t{1} << last_turning(cell.robot).size();
+  poses_.reserve(corners + 1);
+  readings_.reserve(corners + 1);
+}
+
+// The corners of a box around the first pose, then back to it.
+void IdentifyPayloadMotion::begin() {
+  const Robot& robot = cell().robot;
+  const std::vector<std::size_t> joints = last_turning(robot);
+  for (unsigned corner = 0; corner < 1U << joints.size() && !joints.empty(); ++corner) {
+    JointVector pose = commanded();
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      const Joint& joint = robot.joints[joints[k]];
+      const double sign = (corner >> k & 1U) != 0 ? 1.0 : -1.0;
+      pose[joints[k]] = std::clamp(pose[joints[k]] + sign * parameters_.turn_rad,
+                                   joint.lower + kLimitMargin_rad, joint.upper - kLimitMargin_rad);
+    }
+    poses_.push_back(pose);
+  }
+  poses_.push_back(commanded());
+  go_on();
+}
+
+void IdentifyPayloadMotion::go_on() {
+  move_ = JointMove(commanded(), poses_[pose_], cell().robot, kinematics(), parameters_.tool);
+  since_s_ = 0.0;
+  reading_ = SensorTare(SensorTare::parameters_for(cell().robot.sensor, parameters_.samples));
+}
+
+bool IdentifyPayloadMotion::act(const ArmFeedback& feedback) {
+  since_s_ += cycle_s();
+  follow(move_.at(since_s_));
+  if (since_s_ < move_.duration_s() + parameters_.settle_s) return false;
+  if (!measure(feedback)) return false;
+  if (++pose_ == poses_.size()) return true;
+  go_on();
+  return false;
+}
+
+// True once the reading of this pose is complete.
+bool IdentifyPayloadMotion::measure(const ArmFeedback& feedback) {
+  if (!feedback.wrench_fresh) return false;
+  switch (reading_.add(feedback.wrench)) {
+    case SensorTare::Status::kGathering:
+      return false;
+    case SensorTare::Status::kDone:
+      break;
+    case SensorTare::Status::kUnsteady: {
+      const int axis = reading_.worst_axis();
+      end({.reason = EndReason::kTareUnsteady,
+           .index = axis,
+           .value = reading_.deviation(axis),
+           .bound = reading_.deviation_max(axis)});
+      return false;
+    }
+  }
+  const Eigen::Quaterniond R_BS =
+      kinematics().chain().flange(supervision().joints()).orientation * cell().X_FS.orientation;
+  readings_.push_back({R_BS.conjugate() * Vector3(-kGravity_mps2 * cell().up_B), reading_.mean()});
+  // From the first reading on, a force that its weight does not explain ends it.
+  if (!supervision().tared()) supervision().tare(reading_.mean());
+  return true;
+}
+
+}  // namespace tenon::executor

@@ -1,0 +1,85 @@
+#include "executor/telemetry/lcm_url.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+
+#include "shared/base/error.h"
+
+namespace tenon::executor {
+namespace {
+
+constexpr const char* kDefaultGroup = "239.255.76.67";
+constexpr std::uint16_t kDefaultPort = 7667;
+
+// PROVIDER://NETWORK?OPTIONS
+struct Parts {
+  std::string provider;
+  std::string network;
+};
+
+std::optional<Parts> parts_of(const std::string& url) {
+  const std::size_t colon = url.find("://");
+  if (colon == std::string::npos) return std::nullopt;
+  const std::size_t network = colon + 3;
+  return Parts{url.substr(0, colon), url.substr(network, url.find('?', network) - network)};
+}
+
+bool is_multicast(const Parts& parts) {
+  return parts.provider == "udpm" || parts.provider == "mpudpm";
+}
+
+// ADDRESS:PORT, either of which may be missing; empty where it is neither or no multicast group.
+std::optional<sockaddr_in> group_of(const std::string& network) {
+  const std::size_t colon = network.find(':');
+  const std::string address = network.substr(0, colon);
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  if (inet_pton(AF_INET, address.empty() ? kDefaultGroup : address.c_str(), &group.sin_addr) != 1 ||
+      !IN_MULTICAST(ntohl(group.sin_addr.s_addr))) {
+    return std::nullopt;
+  }
+  std::uint16_t port = kDefaultPort;
+  if (colon != std::string::npos && colon + 1 < network.size()) {
+    const char* const end = network.data() + network.size();
+    const auto read = std::from_chars(network.data() + colon + 1, end, port);
+    if (read.ec != std::errc() || read.ptr != end || port == 0) return std::nullopt;
+  }
+  group.sin_port = htons(port);
+  return group;
+}
+
+}  // namespace
+
+void check_lcm_url(const std::string& url) {
+  const std::optional<Parts> parts = parts_of(url);
+  if (parts && is_multicast(*parts)) {
+    if (group_of(parts->network)) return;
+    throw InputError("--lcm-url " + url + ": '" + parts->network +
+                     "' must be a multicast group and a port, as 239.255.76.67:7667");
+  }
+  if (parts && parts->provider == "file" && !parts->network.empty()) return;
+  if (parts && parts->provider == "memq" && parts->network.empty()) return;
+  throw InputError("--lcm-url " + url +
+                   ": not an LCM URL; give udpm://ADDRESS:PORT?ttl=N, file://FILE or memq://");
+}
+
+bool has_multicast_route(const std::string& url) {
+  const std::optional<Parts> parts = parts_of(url);
+  if (!parts || !is_multicast(*parts)) return true;
+  const std::optional<sockaddr_in> group = group_of(parts->network);
+  if (!group) return true;
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (probe < 0) return true;
+  const bool routed =
+      connect(probe, reinterpret_cast<const sockaddr*>(&*group), sizeof(*group)) == 0;
+  close(probe);
+  return routed;
+}
+
+}  // namespace tenon::executor

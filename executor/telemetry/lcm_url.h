@@ -1,0 +1,20 @@
+#pragma once
+// What can be told of an LCM URL before LCM sees it, whose own answers are many lines long and
+// blame the network for a slip of the pen. Set-up code; one system call.
+
+#include <string>
+
+namespace tenon::executor {
+
+/// @throws InputError unless it is udpm:// or mpudpm:// with a multicast address and a port (either
+/// may be left out), file://PATH, or memq://
+void check_lcm_url(const std::string& url);
+
+/// Whether the kernel knows a way to the multicast group of such a URL; true where it needs none.
+[[nodiscard]] bool has_multicast_route(const std::string& url);
+
+/// What to do where it does not.
+inline constexpr const char* kSetMulticastRoute =
+    "set one with 'ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo'";
+
+}  // namespace tenon::executor

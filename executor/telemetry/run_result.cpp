@@ -1,0 +1,135 @@
+#include "executor/telemetry/run_result.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "shared/base/text.h"
+
+namespace tenon::executor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Vector6& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
+
+Json json_of(const Histogram& histogram) {
+  return {{"p50_us", histogram.percentile_us(0.5)},
+          {"p99_us", histogram.percentile_us(0.99)},
+          {"p999_us", histogram.percentile_us(0.999)},
+          {"max_us", histogram.max_us()}};
+}
+
+Json json_of(const StepReport& report) {
+  const GuardedMove::Result& result = report.result;
+  const Vector3& p = result.pose.position_m;
+  const Eigen::Quaterniond& q = result.pose.orientation;
+  Json json = {{"step", report.step},
+               {"commanded", json_of(report.commanded)},
+               {"outcome", to_string(result.outcome)},
+               {"deviation", describe(report.transition)},
+               {"travelled", json_of(result.travelled)},
+               {"signature_before", tenon::to_string(report.signature_before)},
+               {"signature", tenon::to_string(result.signature)},
+               {"position_m", {p.x(), p.y(), p.z()}},
+               {"orientation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+               {"peak_force_N", result.peak_force_N},
+               {"decided_s", 1e-9 * static_cast<double>(result.decided_ns)},
+               {"duration_s", 1e-9 * static_cast<double>(result.duration_ns)}};
+  const Successor next = report.transition.successor;
+  if (next == kSuccessorDone) {
+    json["next"] = "done";
+  } else if (next == kSuccessorFail) {
+    json["next"] = "fail";
+  } else {
+    json["next"] = next;
+  }
+  return json;
+}
+
+// "+x 0.100 m", or "(0.1, 0.05, 0) m" where more than one axis moves.
+std::string displacement_text(const Vector6& displacement) {
+  int moving = 0;
+  int last = 0;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (displacement[axis] == 0.0) continue;
+    ++moving;
+    last = axis;
+  }
+  if (moving == 1) {
+    const double way = displacement[last];
+    return format("%c%s %.3f %s", way < 0.0 ? '-' : '+', axis_name(last), std::abs(way),
+                  last < 3 ? "m" : "rad");
+  }
+  std::string all =
+      format("(%.3f, %.3f, %.3f) m", displacement[0], displacement[1], displacement[2]);
+  if (!displacement.tail<3>().isZero(0.0)) {
+    all += format(" (%.3f, %.3f, %.3f) rad", displacement[3], displacement[4], displacement[5]);
+  }
+  return all;
+}
+
+}  // namespace
+
+RunResult gather_result(const Controller& controller, const CycleRunner& runner,
+                        std::uint64_t records_dropped, const std::string& arm_fault_text) {
+  const Ending& ending = controller.ending();
+  RunResult result;
+  result.reason = ending.reason;
+  result.message = describe(ending, controller.plan(), controller.cell(), arm_fault_text);
+  result.disable_confirmed = controller.finished() && ending.disable_confirmed;
+  if (controller.finished() && !ending.disable_confirmed) {
+    result.message += "; the arm did not confirm that it is disabled";
+  }
+  result.exit_code = ending.reason == EndReason::kPlanDone && result.disable_confirmed ? 0 : 1;
+  for (std::size_t i = 0; i < controller.runner().report_count(); ++i) {
+    result.steps.push_back(controller.runner().report(i));
+  }
+  result.statistics = runner.statistics();
+  result.cycle_s = controller.cycle_s();
+  result.duration_s = result.cycle_s * static_cast<double>(result.statistics.cycles);
+  result.peak_force_N = controller.peak_force_N();
+  result.peak_torque_Nm = controller.peak_torque_Nm();
+  result.records_dropped = records_dropped;
+  return result;
+}
+
+std::string to_json(const RunResult& result, const Plan& plan, const Cell& cell) {
+  Json json = {{"status", result.exit_code == 0 ? "done" : "failed"},
+               {"reason", to_string(result.reason)},
+               {"message", result.message},
+               {"exit_code", result.exit_code},
+               {"disable_confirmed", result.disable_confirmed},
+               {"task", plan.task_name},
+               {"start", plan.start_name},
+               {"cell", cell.name},
+               {"robot", cell.robot.name},
+               {"duration_s", result.duration_s},
+               {"peak_force_N", result.peak_force_N},
+               {"peak_torque_Nm", result.peak_torque_Nm}};
+  json["steps"] = Json::array();
+  for (const StepReport& report : result.steps) json["steps"].push_back(json_of(report));
+  json["cycle"] = {{"period_s", result.cycle_s},
+                   {"cycles", result.statistics.cycles},
+                   {"late_cycles", result.statistics.late_cycles},
+                   {"incomplete_cycles", result.statistics.incomplete_cycles},
+                   {"wakeup_late", json_of(result.statistics.wakeup)},
+                   {"compute", json_of(result.statistics.compute)},
+                   {"records_dropped", result.records_dropped}};
+  return json.dump(2) + "\n";
+}
+
+std::string step_line(const StepReport& report) {
+  const GuardedMove::Result& result = report.result;
+  const double way_m = result.travelled.head<3>().norm();
+  std::string line =
+      format("step %2d: %s -> %s (holds %s) after %.4f m, %.1f N, %.2f s",
+             static_cast<int>(report.step), displacement_text(report.commanded).c_str(),
+             to_string(result.outcome), tenon::to_string(result.signature).c_str(), way_m,
+             result.peak_force_N, 1e-9 * static_cast<double>(result.duration_ns));
+  if (report.transition.deviation != Deviation::kNone) line += "; " + describe(report.transition);
+  return line;
+}
+
+}  // namespace tenon::executor

@@ -1,0 +1,143 @@
+#include "executor/telemetry/telemetry.h"
+
+#include <algorithm>
+#include <lcm/lcm-cpp.hpp>
+#include <utility>
+
+#include "executor/monotonic_clock.h"
+#include "executor/telemetry/lcm_url.h"
+#include "lcmtypes/tenon/cycle_state_t.hpp"
+#include "lcmtypes/tenon/run_summary_t.hpp"
+#include "lcmtypes/tenon/step_event_t.hpp"
+#include "shared/base/error.h"
+
+namespace tenon::executor {
+namespace {
+
+void fill(const PoseData& pose, double (&position_m)[3], double (&orientation_wxyz)[4]) {
+  std::copy(pose.position_m.begin(), pose.position_m.end(), position_m);
+  std::copy(pose.orientation_wxyz.begin(), pose.orientation_wxyz.end(), orientation_wxyz);
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<lcm::LCM>> open_telemetry(const std::string& url,
+                                                      const std::filesystem::path& log,
+                                                      std::vector<std::string>& warnings) {
+  std::vector<std::shared_ptr<lcm::LCM>> outputs;
+  if (url != "none") {
+    check_lcm_url(url);
+    const bool routed = has_multicast_route(url);
+    auto network = routed ? std::make_shared<lcm::LCM>(url) : nullptr;
+    if (network != nullptr && network->good()) {
+      outputs.push_back(std::move(network));
+    } else {
+      warnings.push_back("telemetry: " +
+                         (routed
+                              ? url + " cannot be opened"
+                              : "no multicast route for " + url + " (" + kSetMulticastRoute + ")") +
+                         "; nothing is published" + (log.empty() ? "" : " but the log is written"));
+    }
+  }
+  if (!log.empty()) {
+    auto file = std::make_shared<lcm::LCM>("file://" + log.string() + "?mode=w");
+    if (!file->good()) throw InputError(log.string() + ": the log cannot be written");
+    outputs.push_back(std::move(file));
+  }
+  return outputs;
+}
+
+Telemetry::Telemetry(std::vector<std::shared_ptr<lcm::LCM>> outputs, const Controller& controller,
+                     const Recorder& recorder)
+    : outputs_(std::move(outputs)), controller_(controller), recorder_(recorder) {}
+
+template <typename Message>
+void Telemetry::publish(const char* channel, const Message& message) {
+  for (const auto& output : outputs_) {
+    if (output->publish(channel, &message) != 0) ++failures_;
+  }
+}
+
+void Telemetry::consume(const CycleRecord& record) {
+  publish_cycle(record);
+  while (steps_published_ < record.steps_done) publish_step(record, steps_published_++);
+}
+
+void Telemetry::publish_cycle(const CycleRecord& record) {
+  tenon::cycle_state_t message{};
+  message.utime = MonotonicClock::wall_us();
+  message.sequence = static_cast<std::int64_t>(record.sequence);
+  message.monotonic_ns = record.time_ns;
+  message.motion_ns = record.motion_ns;
+  message.state = static_cast<std::int8_t>(record.state);
+  message.arm_state = static_cast<std::int8_t>(record.arm_state);
+  message.end_reason = static_cast<std::int8_t>(record.end_reason);
+  message.step = static_cast<std::int16_t>(record.step);
+  message.phase = static_cast<std::int8_t>(record.phase);
+  message.signature = static_cast<std::int16_t>(record.signature);
+  fill(record.pose, message.pose_position_m, message.pose_orientation_wxyz);
+  fill(record.setpoint, message.setpoint_position_m, message.setpoint_orientation_wxyz);
+  fill(record.commanded, message.commanded_position_m, message.commanded_orientation_wxyz);
+  std::copy(record.velocity.begin(), record.velocity.end(), message.velocity);
+  std::copy(record.wrench.begin(), record.wrench.end(), message.wrench);
+  message.wrench_fresh = record.wrench_fresh ? 1 : 0;
+  const std::size_t joints = controller_.cell().robot.joints.size();
+  message.joint_count = static_cast<std::int8_t>(joints);
+  const auto end = static_cast<std::ptrdiff_t>(joints);
+  message.joint_position.assign(record.position.begin(), record.position.begin() + end);
+  message.joint_commanded.assign(record.position_commanded.begin(),
+                                 record.position_commanded.begin() + end);
+  message.joints_fresh = static_cast<std::int32_t>(record.joints_fresh);
+  message.wakeup_late_s = 1e-9 * static_cast<double>(record.wakeup_late_ns);
+  message.compute_s = 1e-9 * static_cast<double>(record.compute_ns);
+  message.late_cycles = static_cast<std::int32_t>(record.late_cycles);
+  message.records_dropped = static_cast<std::int64_t>(recorder_.dropped());
+  publish(kCycleChannel, message);
+}
+
+void Telemetry::publish_step(const CycleRecord& record, std::size_t index) {
+  const StepReport& report = controller_.runner().report(index);
+  const GuardedMove::Result& result = report.result;
+  tenon::step_event_t message{};
+  message.utime = MonotonicClock::wall_us();
+  message.sequence = static_cast<std::int64_t>(index);
+  message.monotonic_ns = record.time_ns;
+  message.step = static_cast<std::int16_t>(report.step);
+  message.outcome = static_cast<std::int8_t>(result.outcome);
+  message.deviation = static_cast<std::int8_t>(report.transition.deviation);
+  message.deviation_index = static_cast<std::int16_t>(report.transition.index);
+  message.successor = static_cast<std::int16_t>(report.transition.successor);
+  message.signature_before = static_cast<std::int16_t>(report.signature_before.bits);
+  message.signature = static_cast<std::int16_t>(result.signature.bits);
+  for (int axis = 0; axis < 6; ++axis) {
+    message.commanded[axis] = report.commanded[axis];
+    message.travelled[axis] = result.travelled[axis];
+  }
+  fill(data_of(result.pose), message.position_m, message.orientation_wxyz);
+  message.decided_s = 1e-9 * static_cast<double>(result.decided_ns);
+  message.duration_s = 1e-9 * static_cast<double>(result.duration_ns);
+  message.peak_force_N = result.peak_force_N;
+  publish(kStepChannel, message);
+}
+
+void Telemetry::publish_summary(const RunResult& result, const CycleRecord& last) {
+  tenon::run_summary_t message{};
+  message.utime = MonotonicClock::wall_us();
+  message.sequence = static_cast<std::int64_t>(result.statistics.cycles);
+  message.monotonic_ns = last.time_ns;
+  message.plan = controller_.plan().task_name;
+  message.start = controller_.plan().start_name;
+  message.end_reason = static_cast<std::int8_t>(result.reason);
+  message.message = result.message;
+  message.exit_code = static_cast<std::int8_t>(result.exit_code);
+  message.steps = static_cast<std::int16_t>(result.steps.size());
+  message.late_cycles = static_cast<std::int64_t>(result.statistics.late_cycles);
+  message.incomplete_cycles = static_cast<std::int64_t>(result.statistics.incomplete_cycles);
+  message.records_dropped = static_cast<std::int64_t>(result.records_dropped);
+  message.peak_force_N = result.peak_force_N;
+  message.wakeup_late_max_s = 1e-6 * result.statistics.wakeup.max_us();
+  message.compute_max_s = 1e-6 * result.statistics.compute.max_us();
+  publish(kRunChannel, message);
+}
+
+}  // namespace tenon::executor

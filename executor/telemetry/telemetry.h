@@ -1,0 +1,59 @@
+#pragma once
+// Publishes a run over LCM: every cycle, every finished step, and a summary. Outbound only; nothing
+// that arrives over LCM can move the arm. Lives on the recorder's thread, never on the real-time
+// one: publishing allocates, locks and may block.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "executor/controller.h"
+#include "executor/telemetry/recorder.h"
+#include "executor/telemetry/run_result.h"
+
+namespace lcm {
+class LCM;
+}
+
+namespace tenon::executor {
+
+inline constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
+inline constexpr const char* kCycleChannel = "TENON_CYCLE";
+inline constexpr const char* kStepChannel = "TENON_STEP";
+inline constexpr const char* kRunChannel = "TENON_RUN";
+
+/// Opens where telemetry goes to. What cannot be opened is left out and said in `warnings`, but for
+/// the log. @throws InputError where that cannot be written, or the URL is none (lcm_url.h).
+/// @param url an LCM URL, or "none"  @param log a file for lcm-logplayer, or empty
+[[nodiscard]] std::vector<std::shared_ptr<lcm::LCM>> open_telemetry(
+    const std::string& url, const std::filesystem::path& log, std::vector<std::string>& warnings);
+
+class Telemetry : public RecordConsumer {
+ public:
+  /// @param controller whose run this is, and @param recorder whose losses are told; both outlive
+  /// this
+  Telemetry(std::vector<std::shared_ptr<lcm::LCM>> outputs, const Controller& controller,
+            const Recorder& recorder);
+
+  void consume(const CycleRecord& record) override;
+  void publish_summary(const RunResult& result, const CycleRecord& last);
+
+  /// Messages that LCM could not send.
+  [[nodiscard]] std::uint64_t failures() const { return failures_; }
+
+ private:
+  void publish_cycle(const CycleRecord& record);
+  void publish_step(const CycleRecord& record, std::size_t index);
+  template <typename Message>
+  void publish(const char* channel, const Message& message);
+
+  std::vector<std::shared_ptr<lcm::LCM>> outputs_;
+  const Controller& controller_;
+  const Recorder& recorder_;
+  std::size_t steps_published_ = 0;
+  std::uint64_t failures_ = 0;
+};
+
+}  // namespace tenon::executor

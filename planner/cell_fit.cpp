@@ -1,0 +1,151 @@
+#include "planner/cell_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/base/error.h"
+#include "shared/base/text.h"
+#include "shared/motion/rules.h"
+#include "shared/motion/stiff_contact.h"
+
+namespace tenon::planner {
+namespace {
+
+constexpr double kDampingMargin = 1.1;
+// Of the force fault; the rest is for the sensor's noise and for what the formula leaves out.
+constexpr double kPeakShare = 0.8;
+// A guarded move takes a tool below 1 mm/s for blocked, so that a touch must be clearly faster.
+constexpr double kContactSpeedMin_mps = 2e-3;
+constexpr double kNoiseDeviations = 5.0;
+constexpr double kNoiseMargin = 1.05;
+// A contact is confirmed by three samples in a row, however long the cycle.
+constexpr std::uint32_t kDebounceCycles = 2;
+constexpr double kTimeoutMax_us = 600e6;
+
+class Fitting {
+ public:
+  Fitting(const Task& task, const Cell& cell) : cell_(cell), loop_(contact_loop(cell)) {
+    fit_.task = task;
+    fit_.assumptions = {loop_.stiffness_Npm, loop_.latency_s()};
+  }
+
+  CellFit run() {
+    fit_debounce();
+    fit_thresholds();
+    fit_compliance();
+    fit_contact_speed();
+    return std::move(fit_);
+  }
+
+ private:
+  template <typename... Values>
+  void note(const char* pattern, Values... values) {
+    fit_.changes.push_back(format(pattern, values...));
+  }
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw InputError("cell '" + cell_.name + "' cannot execute task '" + fit_.task.name +
+                     "': " + why);
+  }
+
+  void fit_debounce() {
+    std::uint32_t& debounce_us = fit_.task.motion.thresholds.debounce_us;
+    const std::uint32_t least_us = kDebounceCycles * cell_.robot.cycle_us;
+    if (debounce_us >= least_us) return;
+    note("debounce %g -> %g ms: at least two cycles of %g ms", 1e-3 * debounce_us, 1e-3 * least_us,
+         1e3 * loop_.cycle_s);
+    debounce_us = least_us;
+  }
+
+  void fit_thresholds() {
+    Task& task = fit_.task;
+    ContactThresholds& t = task.motion.thresholds;
+    const double noise_N = cell_.robot.sensor.force_noise_N;
+    if (t.force_on_N < kNoiseDeviations * noise_N) {
+      const double raised_N = kNoiseMargin * kNoiseDeviations * noise_N;
+      note("force_on %g -> %g N, keep and off with it: the sensor's noise is %g N", t.force_on_N,
+           raised_N, noise_N);
+      t.force_keep_N *= raised_N / t.force_on_N;
+      t.force_off_N *= raised_N / t.force_on_N;
+      t.force_on_N = raised_N;
+    }
+    const double limit_least_N = kProbeOverOn * t.force_on_N;
+    if (task.force_limit_N < limit_least_N) {
+      note("force_limit %g -> %g N: %g force_on", task.force_limit_N, limit_least_N, kProbeOverOn);
+      task.force_limit_N = limit_least_N;
+    }
+    if (task.force_limit_N > cell_.force_fault_N) {
+      refuse(format("force_limit = %g N, must be at most the cell's faults.force_N = %g N",
+                    task.force_limit_N, cell_.force_fault_N));
+    }
+    ContactConditions conditions;
+    conditions.friction_max = task.friction.high;
+    conditions.force_noise_N = noise_N;
+    if (const auto rule =
+            broken_rule(t, task.force_limit_N, task.motion.speeds.acceleration_mps2, conditions)) {
+      refuse(*rule);
+    }
+  }
+
+  void fit_compliance() {
+    Compliance& c = fit_.task.compliance;
+    const double damping_least = damping_least_Nspm(loop_);
+    if (c.damping_Nspm < damping_least) {
+      const double raised = kDampingMargin * damping_least;
+      note("damping %g -> %.4g Ns/m: at least 1.5 k_e tau = 1.5 * %g * %g = %.4g", c.damping_Nspm,
+           raised, loop_.stiffness_Npm, loop_.latency_s(), damping_least);
+      c.damping_Nspm = raised;
+    }
+    const double mass_most = mass_most_kg(loop_, c.damping_Nspm);
+    if (c.mass_kg > mass_most) {
+      note("mass %g -> %.4g kg: at most D tau = %.4g * %g", c.mass_kg, mass_most, c.damping_Nspm,
+           loop_.latency_s());
+      c.mass_kg = mass_most;
+    }
+  }
+
+  void fit_contact_speed() {
+    Task& task = fit_.task;
+    SpeedLimits& speeds = task.motion.speeds;
+    const double force_on_N = task.motion.thresholds.force_on_N;
+    const double most_N = kPeakShare * cell_.force_fault_N;
+    const double peak_N = peak_force_N(loop_, task.compliance, force_on_N, speeds.contact_mps);
+    if (peak_N <= most_N) return;
+
+    const double seconds = loop_.blind_s() + task.compliance.mass_kg / task.compliance.damping_Nspm;
+    const double lowered_mps = (most_N - force_on_N) / (loop_.stiffness_Npm * seconds);
+    if (!(lowered_mps >= kContactSpeedMin_mps)) {
+      refuse(
+          format("contact_mps would have to be %.3g for a peak force of at most %g of "
+                 "faults.force_N = %g N with force_on %g N, k_e = %g N/m and %.3g s to stop; "
+                 "must be at least %g",
+                 lowered_mps, kPeakShare, cell_.force_fault_N, force_on_N, loop_.stiffness_Npm,
+                 seconds, kContactSpeedMin_mps));
+    }
+    note(
+        "contact speed %g -> %.4g m/s: the peak force F_on + k_e v ((n + 1) T + tau_arm + M / D) "
+        "= %g + %g * v * %.4g was %.3g N, now %g of the fault at %g N",
+        speeds.contact_mps, lowered_mps, force_on_N, loop_.stiffness_Npm, seconds, peak_N,
+        kPeakShare, cell_.force_fault_N);
+    stretch_timeout(speeds.contact_mps / lowered_mps);
+    speeds.contact_mps = lowered_mps;
+  }
+
+  void stretch_timeout(double factor) {
+    std::uint32_t& timeout_us = fit_.task.motion.timeout_us;
+    const double longer_us = std::min(factor * timeout_us, kTimeoutMax_us);
+    note("timeout %g -> %.4g s: as much longer as the contact speed is lower", 1e-6 * timeout_us,
+         1e-6 * longer_us);
+    timeout_us = static_cast<std::uint32_t>(longer_us);
+  }
+
+  const Cell& cell_;
+  ContactLoop loop_;
+  CellFit fit_;
+};
+
+}  // namespace
+
+CellFit fit_to_cell(const Task& task, const Cell& cell) { return Fitting(task, cell).run(); }
+
+}  // namespace tenon::planner

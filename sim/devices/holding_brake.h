@@ -1,0 +1,34 @@
+#pragma once
+// A holding brake behind its output: it opens and closes some time after the output says so.
+
+#include <cstdint>
+
+namespace tenon::sim {
+
+class HoldingBrake {
+ public:
+  HoldingBrake(std::int64_t release_ns, std::int64_t engage_ns)
+      : release_ns_(release_ns), engage_ns_(engage_ns) {}
+
+  void set(bool engaged) {
+    if (engaged == engaged_) return;
+    engaged_ = engaged;
+    since_ns_ = 0;
+  }
+  void advance(std::int64_t step_ns) {
+    since_ns_ += step_ns;
+    if (since_ns_ >= (engaged_ ? engage_ns_ : release_ns_)) holds_ = engaged_;
+  }
+
+  [[nodiscard]] bool engaged() const { return engaged_; }  ///< the output
+  [[nodiscard]] bool holds() const { return holds_; }      ///< the axis
+
+ private:
+  std::int64_t release_ns_;
+  std::int64_t engage_ns_;
+  std::int64_t since_ns_ = 0;
+  bool engaged_ = true;
+  bool holds_ = true;
+};
+
+}  // namespace tenon::sim

@@ -1,0 +1,71 @@
+// A task made for a fast arm, planned for one with a cycle of 10 ms, and executed there.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <string>
+
+#include "executor/plan_check.h"
+#include "planner/cell_fit.h"
+#include "planner/plan_builder.h"
+#include "planner/planner.h"
+#include "sim/rollout/ode_rollout.h"
+#include "tests/chain/planned.h"
+#include "tests/support/lockstep.h"
+
+namespace tenon::tests {
+namespace {
+
+// The gantry with the bus and the drives of a slow arm.
+Cell slow_cell() {
+  Cell cell = gantry_cell();
+  cell.robot.cycle_us = 10'000;
+  cell.robot.response_lag_s = 0.020;
+  for (Joint& joint : cell.robot.joints) joint.following_error_max = 0.02;
+  return cell;
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+TEST(ContactAtASlowCycle, APlanOfTheTaskAsItStandsIsRefused) {
+  // D = 1500 against 1.5 * 5e4 * 35 ms, and 6 + 5e4 * 0.05 * (40 ms + 2 / 1500).
+  const std::array<Vector6, 1> way = {Vector6::Unit(0)};
+  const Plan plan = planner::draft_plan(box_task(), box_start("1"), {5e4, 0.035}, way);
+  const std::vector<std::string> refusals = executor::check_plan(plan, slow_cell());
+  ASSERT_EQ(refusals.size(), 2U);
+  EXPECT_NE(refusals[0].find("1500"), std::string::npos) << refusals[0];
+  EXPECT_NE(refusals[0].find("2625"), std::string::npos) << refusals[0];
+  EXPECT_NE(refusals[1].find("109.333 N"), std::string::npos) << refusals[1];
+}
+
+TEST(ContactAtASlowCycle, APlanForTheCellReachesTheGoalWhereverTheTableStands) {
+  const Cell cell = slow_cell();
+  const planner::CellFit fit = planner::fit_to_cell(box_task(), cell);
+  planner::PlannerOptions options;
+  options.threads = 2;
+  options.assumptions = fit.assumptions;
+  const Start& start = box_start("1");
+  const auto report =
+      planner::make_plan(fit.task, start, sim::OdeRollout(fit.task), options, now_s);
+  ASSERT_TRUE(report.plan) << report.reason;
+  EXPECT_TRUE(executor::check_plan(*report.plan, cell).empty());
+
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+    double distance = 0.0;
+    Lockstep::Options run_options;
+    run_options.start = start.name;
+    run_options.seed = seed;
+    run_options.offset = draw_offset(fit.task, start, seed, distance);
+    const auto result = Lockstep(cell, fit.task, *report.plan, run_options).run();
+    EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanDone)
+        << "seed " << seed << " at " << distance << " sigma: " << result.reason;
+    EXPECT_LT(result.truth.error_norm_m, fit.task.goal_tolerance_m) << "seed " << seed;
+    EXPECT_LE(result.truth.contact_force_N_max, 0.8 * cell.force_fault_N) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace tenon::tests

@@ -1,0 +1,91 @@
+// The whole chain in worlds that are not the planner's.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "shared/config/load.h"
+#include "sim/virtual_arm/world_draw.h"
+#include "tests/chain/planned.h"
+#include "tests/support/lockstep.h"
+
+namespace tenon::tests {
+namespace {
+
+constexpr std::uint64_t kSeeds = 6;
+
+std::string truth_of(std::uint64_t seed) {
+  static const WorldRanges ranges =
+      load_experiment(TENON_SOURCE_DIR "/sim/experiments/box_on_table.yaml");
+  Lockstep::Options options;
+  options.start = "1";
+  options.seed = seed;
+  options.world = sim::draw_world(ranges, box_task(), seed);
+  double distance = 0.0;
+  options.offset = draw_offset(box_task(), box_start("1"), seed, distance);
+  const auto result = Lockstep(gantry_cell(), box_task(), box_plan("1"), options).run();
+  EXPECT_EQ(result.truth.solver_messages, 0U) << seed;
+  return result.reason + "\n" + sim::truth_json(result.truth);
+}
+
+std::vector<std::string> truths_on(std::size_t thread_count) {
+  std::vector<std::string> truths(kSeeds);
+  std::atomic<std::uint64_t> next = 0;
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < thread_count; ++i) {
+    threads.emplace_back([&] {
+      for (std::uint64_t seed = next++; seed < kSeeds; seed = next++) {
+        truths[seed] = truth_of(seed + 1);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  return truths;
+}
+
+TEST(World, RunsInDrawnWorldsAreTheSameOnOneThreadAndOnTwo) {
+  static_cast<void>(box_plan("1"));  // made here, on one thread
+  const std::vector<std::string> one = truths_on(1);
+  EXPECT_EQ(one, truths_on(2));
+  EXPECT_NE(one[0], one[1]);
+}
+
+Lockstep::Result run_in(const sim::WorldDraw& world) {
+  Lockstep::Options options;
+  options.start = "1";
+  options.world = world;
+  return Lockstep(gantry_cell(), box_task(), box_plan("1"), options).run();
+}
+
+TEST(World, ATableThatCalibrationMisplacedIsFoundByTouch) {
+  sim::WorldDraw world;
+  world.task_in_base_error.head<2>() << 0.004, -0.003;
+  const auto found = run_in(world);
+  EXPECT_EQ(found.ending.reason, executor::EndReason::kPlanDone) << found.reason;
+  EXPECT_TRUE(found.truth.within_tolerance) << found.truth.error_norm_m;
+}
+
+TEST(World, AStifferContactIsPressedHarder) {
+  sim::WorldDraw soft;
+  soft.contact_stiffness_Npm = 1e4;
+  sim::WorldDraw hard;
+  hard.contact_stiffness_Npm = 4e5;
+  const double soft_N = run_in(soft).truth.contact_force_N_max;
+  const double hard_N = run_in(hard).truth.contact_force_N_max;
+  EXPECT_GT(hard_N, 1.2 * soft_N);
+}
+
+TEST(World, ACalibrationErrorBeyondThePlansEnvelopesChangesTheOutcome) {
+  sim::WorldDraw world;
+  world.task_in_base_error[0] = -0.18;
+  const auto result = run_in(world);
+  EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanFailed) << result.reason;
+  EXPECT_FALSE(result.truth.within_tolerance);
+}
+
+}  // namespace
+}  // namespace tenon::tests
