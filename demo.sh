@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-seed=1 start=1 task=box_on_table_2d cell=gantry3 output=build/demo
+seed=1 start=1 task=box_on_table_2d cell=csp6 output=build/demo
 while (($#)); do
   case "$1" in
     --seed | --start | --task | --cell | --output)
@@ -47,6 +47,7 @@ echo "== Plan: $task from start $start, positions uncertain"
 
 echo
 echo "== Virtual arm: $cell, the environment displaced by a draw of seed $seed"
+: >"$output/sim.out"
 "$bin/tenon-sim" --cell "$cell_file" --task "$task_file" --start "$start" --seed "$seed" \
   --can slcan-listen://127.0.0.1:0 --once --json "$output/truth.json" >"$output/sim.out" 2>&1 &
 sim=$!
