@@ -195,9 +195,9 @@ void GuardedMove::probe(const Input& input) {
   }
   if (input.wrench_fresh && watched(detector_.candidates()).bits == 0) {
     phase_ = Phase::kMoving;
-    // The tool ran on while the command stood. From anywhere else the difference would stay, since
-    // the compliance takes D / K to close it.
-    path_ = std::clamp(path_at(input.pose), 0.0, length_);
+    // Where the tool ran on while the command stood, the command goes on from there: the compliance
+    // would take D / K to close the difference. A tool that is held back keeps its spring loaded.
+    path_ = std::clamp(path_at(input.pose), path_, length_);
     plan_path(input.time_ns, path_);
     setpoint_.pose = displaced(rest_, length_ > 0.0 ? Vector6(displacement_ * (path_ / length_))
                                                     : Vector6(Vector6::Zero()));

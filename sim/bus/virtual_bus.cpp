@@ -281,9 +281,10 @@ FrameBits VirtualBus::bits_of(const CanFrame& frame) const {
 }
 
 std::int64_t VirtualBus::duration_ns(const FrameBits& bits) const {
-  if (bits.data == 0) return bits_ns(bits.nominal);
+  const std::int64_t nominal_ns = bits_ns(bits.nominal);
+  if (bits.data == 0) return nominal_ns;
   const std::int64_t rate = parameters_.data_bitrate_bps;
-  return bits_ns(bits.nominal) + (std::int64_t{bits.data} * 1'000'000'000 + rate - 1) / rate;
+  return nominal_ns + (std::int64_t{bits.data} * 1'000'000'000 + rate - 1) / rate;
 }
 
 std::int64_t VirtualBus::bits_ns(std::uint32_t bits) const {

@@ -22,7 +22,7 @@ constexpr double kStep_s = 0.0005;
 class Bench {
  public:
   explicit Bench(const Cell& cell, const JointVector& start,
-                 ArmBody::Parameters parameters = ArmBody::Parameters())
+                 const ArmBody::Parameters& parameters = ArmBody::Parameters())
       : demands(cell.robot.joints.size()), arm(cell, empty_task(), with(parameters, start)) {
     for (std::size_t i = 0; i < demands.size(); ++i) {
       demands[i].position = start[i];

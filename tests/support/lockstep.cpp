@@ -37,14 +37,14 @@ Lockstep::Lockstep(const Cell& cell, const Task& task, const Plan& plan, const O
     bus_faults_ = std::make_unique<sim::BusFaults>(options.faults, robot.master_node);
     if (!options.faults.empty()) bus().set_disturbance(bus_faults_.get());
   }
-  sim::Link& link = options.link != nullptr ? *options.link : *link_;
+  sim::Link* link = options.link != nullptr ? options.link : link_.get();
   const executor::CycleRunner::Parameters loop;
-  arm_ = std::make_unique<hw::CanopenArm>(robot, link.master());
+  arm_ = std::make_unique<hw::CanopenArm>(robot, link->master());
   controller_ = std::make_unique<executor::Controller>(cell, plan, options.controller);
   runner_ = std::make_unique<executor::CycleRunner>(*arm_, *controller_, sink, loop);
   virtual_cell_ = std::make_unique<sim::VirtualCell>(cell, task, world_of(options));
   time_ = std::make_unique<sim::Lockstep>(
-      *arm_, *virtual_cell_, link,
+      *arm_, *virtual_cell_, *link,
       sim::Lockstep::Parameters{.cycle_ns = std::int64_t{1000} * robot.cycle_us,
                                 .feedback_deadline = loop.feedback_deadline});
 }
