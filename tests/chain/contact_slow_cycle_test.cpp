@@ -3,14 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <chrono>
 #include <string>
 
 #include "executor/plan_check.h"
-#include "planner/cell_fit.h"
 #include "planner/plan_builder.h"
-#include "planner/planner.h"
-#include "sim/rollout/ode_rollout.h"
 #include "tests/chain/planned.h"
 #include "tests/support/lockstep.h"
 
@@ -26,10 +22,6 @@ Cell slow_cell() {
   return cell;
 }
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 TEST(ContactAtASlowCycle, APlanOfTheTaskAsItStandsIsRefused) {
   // D = 1500 against 1.5 * 5e4 * 35 ms, and 6 + 5e4 * 0.05 * (40 ms + 2 / 1500).
   const std::array<Vector6, 1> way = {Vector6::Unit(0)};
@@ -43,26 +35,20 @@ TEST(ContactAtASlowCycle, APlanOfTheTaskAsItStandsIsRefused) {
 
 TEST(ContactAtASlowCycle, APlanForTheCellReachesTheGoalWhereverTheTableStands) {
   const Cell cell = slow_cell();
-  const planner::CellFit fit = planner::fit_to_cell(box_task(), cell);
-  planner::PlannerOptions options;
-  options.threads = 2;
-  options.assumptions = fit.assumptions;
   const Start& start = box_start("1");
-  const auto report =
-      planner::make_plan(fit.task, start, sim::OdeRollout(fit.task), options, now_s);
-  ASSERT_TRUE(report.plan) << report.reason;
-  EXPECT_TRUE(executor::check_plan(*report.plan, cell).empty());
+  const auto [task, plan] = plan_box(cell, start.name);
+  EXPECT_TRUE(executor::check_plan(plan, cell).empty());
 
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
     double distance = 0.0;
     Lockstep::Options run_options;
     run_options.start = start.name;
     run_options.seed = seed;
-    run_options.offset = draw_offset(fit.task, start, seed, distance);
-    const auto result = Lockstep(cell, fit.task, *report.plan, run_options).run();
+    run_options.offset = draw_offset(task, start, seed, distance);
+    const auto result = Lockstep(cell, task, plan, run_options).run();
     EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanDone)
         << "seed " << seed << " at " << distance << " sigma: " << result.reason;
-    EXPECT_LT(result.truth.error_norm_m, fit.task.goal_tolerance_m) << "seed " << seed;
+    EXPECT_LT(result.truth.error_norm_m, task.goal_tolerance_m) << "seed " << seed;
     EXPECT_LE(result.truth.contact_force_N_max, 0.8 * cell.force_fault_N) << "seed " << seed;
   }
 }

@@ -19,17 +19,6 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-Plan make(const std::string& start) {
-  planner::PlannerOptions options;
-  options.threads = 2;
-  const planner::CellFit fit = planner::fit_to_cell(box_task(), gantry_cell());
-  options.assumptions = fit.assumptions;
-  const sim::OdeRollout rollout(fit.task);
-  const auto report = planner::make_plan(fit.task, box_start(start), rollout, options, now_s);
-  if (!report.plan) throw std::runtime_error("start " + start + ": " + report.reason);
-  return *report.plan;
-}
-
 }  // namespace
 
 const Task& box_task() {
@@ -49,10 +38,21 @@ const Start& box_start(const std::string& name) {
   throw std::runtime_error("no start " + name);
 }
 
+Planned plan_box(const Cell& cell, const std::string& start) {
+  planner::PlannerOptions options;
+  options.threads = 2;
+  const planner::CellFit fit = planner::fit_to_cell(box_task(), cell);
+  options.assumptions = fit.assumptions;
+  const sim::OdeRollout rollout(fit.task);
+  const auto report = planner::make_plan(fit.task, box_start(start), rollout, options, now_s);
+  if (!report.plan) throw std::runtime_error("start " + start + ": " + report.reason);
+  return {fit.task, *report.plan};
+}
+
 const Plan& box_plan(const std::string& start) {
   static std::map<std::string, Plan> plans;
   auto found = plans.find(start);
-  if (found == plans.end()) found = plans.emplace(start, make(start)).first;
+  if (found == plans.end()) found = plans.emplace(start, plan_box(gantry_cell(), start).plan).first;
   return found->second;
 }
 

@@ -13,7 +13,15 @@ namespace tenon::tests {
 [[nodiscard]] const Cell& gantry_cell();
 /// The start of box_task() by name.
 [[nodiscard]] const Start& box_start(const std::string& name);
-/// Planned for the cell as `tenon-plan --cell` does; through bytes.
+
+/// A task fitted to a cell, and a plan for it.
+struct Planned {
+  Task task;
+  Plan plan;
+};
+/// box_task() planned for a cell as `tenon-plan --cell` does; through bytes. Throws without a plan.
+[[nodiscard]] Planned plan_box(const Cell& cell, const std::string& start);
+/// The same for the gantry, remembered.
 [[nodiscard]] const Plan& box_plan(const std::string& start);
 
 }  // namespace tenon::tests

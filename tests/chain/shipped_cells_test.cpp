@@ -3,16 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 
 #include "executor/plan_check.h"
-#include "planner/cell_fit.h"
-#include "planner/planner.h"
 #include "shared/config/load.h"
-#include "sim/rollout/ode_rollout.h"
 #include "sim/virtual_arm/environment_offset.h"
 #include "tests/chain/planned.h"
 #include "tests/support/lockstep.h"
@@ -20,31 +16,21 @@
 namespace tenon::tests {
 namespace {
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 class ShippedCell : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ShippedCell, BringsTheBoxToItsGoalWhereverTheDemosSeedsPutTheTableWithinThePlansReach) {
   const std::filesystem::path tree = TENON_SOURCE_DIR;
   const Cell cell = load_cell(tree / "hw/cells" / (std::string(GetParam()) + ".yaml"));
-  const planner::CellFit fit = planner::fit_to_cell(box_task(), cell);
-  planner::PlannerOptions options;
-  options.threads = 2;
-  options.assumptions = fit.assumptions;
   const Start& start = box_start("1");
-  const auto report =
-      planner::make_plan(fit.task, start, sim::OdeRollout(fit.task), options, now_s);
-  ASSERT_TRUE(report.plan) << report.reason;
-  ASSERT_TRUE(executor::check_plan(*report.plan, cell).empty());
+  const auto [task, plan] = plan_box(cell, start.name);
+  ASSERT_TRUE(executor::check_plan(plan, cell).empty());
 
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Lockstep::Options run_options;
     run_options.start = start.name;
     run_options.seed = seed;
-    run_options.offset = sim::draw_offset(start, fit.task.coordinates, seed);
-    const auto result = Lockstep(cell, fit.task, *report.plan, run_options).run();
+    run_options.offset = sim::draw_offset(start, task.coordinates, seed);
+    const auto result = Lockstep(cell, task, plan, run_options).run();
     std::printf("%s, seed %d: table off by x %.1f y %.1f mm, %s, %.2f mm from the goal, %.0f N\n",
                 GetParam(), static_cast<int>(seed), 1e3 * run_options.offset[0],
                 1e3 * run_options.offset[1], result.reason.c_str(), 1e3 * result.truth.error_norm_m,
@@ -52,11 +38,11 @@ TEST_P(ShippedCell, BringsTheBoxToItsGoalWhereverTheDemosSeedsPutTheTableWithinT
     const bool done = result.ending.reason == executor::EndReason::kPlanDone;
     const Vector3 sigma = start.sigma.head<3>().cwiseMax(1e-9);
     const double distance = run_options.offset.head<3>().cwiseQuotient(sigma).norm();
-    if (distance <= fit.task.particle_sigmas) {
+    if (distance <= task.particle_sigmas) {
       EXPECT_TRUE(done) << "seed " << seed << ": " << result.reason;
     }
     if (done) {
-      EXPECT_LT(result.truth.error_norm_m, fit.task.goal_tolerance_m) << "seed " << seed;
+      EXPECT_LT(result.truth.error_norm_m, task.goal_tolerance_m) << "seed " << seed;
     }
   }
 }
