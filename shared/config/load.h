@@ -15,9 +15,12 @@
 
 namespace tenon {
 
-/// planner/tasks/*.yaml. Checks everything that can be told without physics; a start in collision
-/// is refused by check_starts() in the planner.
-[[nodiscard]] Task load_task(const std::filesystem::path& file);
+/// planner/tasks/*.yaml, or one of its variants: "FILE#VARIANT". Checks everything that can be told
+/// without physics; a start in collision is refused by check_starts() in the planner.
+[[nodiscard]] Task load_task(const std::filesystem::path& name);
+
+/// The names of a task file's variants, in its order.
+[[nodiscard]] std::vector<std::string> task_variants(const std::filesystem::path& file);
 
 /// hw/robots/NAME/robot.yaml and the URDF that it names.
 [[nodiscard]] Robot load_robot(const std::filesystem::path& file);

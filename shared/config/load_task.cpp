@@ -5,8 +5,11 @@
 
 #include "shared/config/files.h"
 #include "shared/config/load.h"
+#include "shared/config/variant.h"
 #include "shared/config/yaml_value.h"
 #include "shared/motion/rules.h"
+#include "shared/task/inserted.h"
+#include "shared/task/ring.h"
 
 namespace tenon {
 namespace {
@@ -19,6 +22,7 @@ using config::Value;
 constexpr std::array<const char*, 6> kAxes = {"x", "y", "z", "rx", "ry", "rz"};
 constexpr std::size_t kShapesMax = 200;
 constexpr std::size_t kStartsMax = 200;
+constexpr double kSizeMax_m = 100.0;
 
 bool has(CoordinateMask mask, int axis) { return (mask >> axis & 1U) != 0; }
 
@@ -37,26 +41,54 @@ CoordinateMask read_axes(const Value& value) {
   return static_cast<CoordinateMask>(mask);
 }
 
-Shape read_shape(const Value& value, std::set<std::string>& names) {
-  const Map map(value, {"name", "box_m", "cylinder", "pose"});
+Ring read_ring(const Value& value, const std::string& name, const Pose& pose) {
+  const Map map(value, {"inner_diameter_m", "outer_diameter_m", "length_m", "segments"});
+  Ring ring;
+  ring.name = name;
+  ring.pose = pose;
+  ring.inner_diameter_m = map.number("inner_diameter_m", positive_to(kSizeMax_m));
+  ring.outer_diameter_m = map.number("outer_diameter_m", {ring.inner_diameter_m, kSizeMax_m, true});
+  ring.length_m = map.number("length_m", positive_to(kSizeMax_m));
+  if (const auto segments = map.find("segments")) {
+    ring.segments = static_cast<int>(segments->integer(8, 64));
+  }
+  return ring;
+}
+
+/// A shape, or those that a ring is made of.
+std::vector<Shape> read_shape(const Value& value, std::set<std::string>& names) {
+  const Map map(value, {"name", "box_m", "cylinder", "ring", "pose"});
   Shape shape;
   shape.name = map.at("name").name();
   if (!names.insert(shape.name).second) map.at("name").refuse_value("unique among the shapes");
   shape.pose = map.at("pose").pose();
   const auto box = map.find("box_m");
   const auto cylinder = map.find("cylinder");
-  if (box.has_value() == cylinder.has_value()) {
-    value.refuse("needs either box_m: [x, y, z] or cylinder: {diameter_m: d, length_m: l}");
+  const auto ring = map.find("ring");
+  if (box.has_value() + cylinder.has_value() + ring.has_value() != 1) {
+    value.refuse(
+        "needs one of box_m: [x, y, z], cylinder: {diameter_m: d, length_m: l}, "
+        "ring: {inner_diameter_m: i, outer_diameter_m: o, length_m: l}");
   }
+  if (ring) return boxes_of(read_ring(*ring, shape.name, shape.pose));
   if (box) {
-    shape.size_m = box->vector(positive_to(100.0));
-    return shape;
+    shape.size_m = box->vector(positive_to(kSizeMax_m));
+    return {shape};
   }
   const Map sizes(*cylinder, {"diameter_m", "length_m"});
-  const double diameter_m = sizes.number("diameter_m", positive_to(100.0));
+  const double diameter_m = sizes.number("diameter_m", positive_to(kSizeMax_m));
   shape.kind = Shape::Kind::kCylinder;
-  shape.size_m = {diameter_m, diameter_m, sizes.number("length_m", positive_to(100.0))};
-  return shape;
+  shape.size_m = {diameter_m, diameter_m, sizes.number("length_m", positive_to(kSizeMax_m))};
+  return {shape};
+}
+
+std::vector<Shape> read_shapes(const Value& value, std::set<std::string>& names) {
+  std::vector<Shape> shapes;
+  for (const Value& entry : value.list(1, kShapesMax)) {
+    const std::vector<Shape> read = read_shape(entry, names);
+    shapes.insert(shapes.end(), read.begin(), read.end());
+  }
+  return shapes;
 }
 
 /// One number for each search coordinate of a kind, in the order x y z or rx ry rz.
@@ -96,10 +128,16 @@ Start read_start(const Value& value, const Task& task, std::set<std::string>& na
 }
 
 void read_goal(const Value& value, Task& task) {
-  const Map map(value, {"pose", "tolerance_m", "uncertainty_m2"});
+  const Map map(value, {"pose", "tolerance_m", "uncertainty_m2", "inserted"});
   task.goal = map.at("pose").pose();
   task.goal_tolerance_m = map.number("tolerance_m", positive_to(1.0));
   task.goal_uncertainty_m2 = map.number("uncertainty_m2", positive_to(1.0));
+
+  const auto region = map.find("inserted");
+  if (!region) return;
+  const Map box(*region, {"box_m", "pose"});
+  task.inserted = {box.at("box_m").vector(positive_to(kSizeMax_m)), box.at("pose").pose()};
+  if (!inserted(task, task.goal)) region->refuse("must contain the goal's position");
 }
 
 void read_primitives(const Value& value, Task& task) {
@@ -174,9 +212,9 @@ void read_compliance(const Value& value, Task& task) {
 }
 
 void read_search(const Value& value, Task& task) {
-  const Map map(
-      value, {"w1", "w2", "distance_weight_per_m", "uncertainty_weight_per_m2", "position_weight",
-              "orientation_weight_m_per_rad", "attractor_ratio", "time_limit_s"});
+  const Map map(value, {"w1", "w2", "distance_weight_per_m", "uncertainty_weight_per_m2",
+                        "position_weight", "orientation_weight_m_per_rad", "attractor_ratio",
+                        "attractor_samples", "time_limit_s"});
   constexpr Bounds kWeight = positive_to(1e12);
   constexpr Bounds kInflation = {1.0, 1e3};
   map.optional_number("w1", kInflation, task.w1);
@@ -186,6 +224,9 @@ void read_search(const Value& value, Task& task) {
   map.optional_number("position_weight", kWeight, task.position_weight);
   map.optional_number("orientation_weight_m_per_rad", kWeight, task.orientation_weight);
   map.optional_number("attractor_ratio", positive_to(1.0), task.attractor_ratio);
+  if (const auto samples = map.find("attractor_samples")) {
+    task.attractor_samples = static_cast<std::size_t>(samples->integer(0, 1000));
+  }
   map.optional_number("time_limit_s", positive_to(86'400.0), task.time_limit_s);
 }
 
@@ -205,25 +246,34 @@ void read_physics(const Value& value, Task& task) {
   task.rollout_step_us = microseconds(step->number({1e-4, std::min(0.01, step_max_s)}));
 }
 
+/// With the variant's name behind it, as long as a plan can hold.
+std::string read_name(const Value& value, const std::optional<std::string>& variant) {
+  std::string name = value.name();
+  if (variant) name += "/" + *variant;
+  if (name.size() > config::kNameMax) {
+    value.refuse("with its variant, '" + name + "', longer than " +
+                 std::to_string(config::kNameMax) + " characters");
+  }
+  return name;
+}
+
 }  // namespace
 
-Task load_task(const std::filesystem::path& file) {
+Task load_task(const std::filesystem::path& name) {
+  const auto [file, variant] = config::split_variant(name);
   const std::string text = config::read_file(file);
-  const Map map(Value::parse(file, text),
+  const Value document = Value::parse(file, text);
+  const Map map(variant ? config::with_variant(document, *variant) : document,
                 {"name", "coordinates", "held", "environment", "starts", "particle_sigmas", "goal",
-                 "primitives", "speeds", "contact", "compliance", "search", "physics"});
+                 "primitives", "speeds", "contact", "compliance", "search", "physics", "variants"});
   Task task;
-  task.name = map.at("name").name();
-  task.hash = config::fnv1a_64(text);
+  task.name = read_name(map.at("name"), variant);
+  task.hash = config::fnv1a_64(variant ? text + "#" + *variant : text);
   task.coordinates = read_axes(map.at("coordinates"));
 
   std::set<std::string> shape_names;
-  for (const Value& shape : map.at("held").list(1, kShapesMax)) {
-    task.held.push_back(read_shape(shape, shape_names));
-  }
-  for (const Value& shape : map.at("environment").list(1, kShapesMax)) {
-    task.environment.push_back(read_shape(shape, shape_names));
-  }
+  task.held = read_shapes(map.at("held"), shape_names);
+  task.environment = read_shapes(map.at("environment"), shape_names);
 
   read_goal(map.at("goal"), task);
   std::set<std::string> start_names;
@@ -239,6 +289,10 @@ Task load_task(const std::filesystem::path& file) {
   read_compliance(map.at("compliance"), task);
   if (const auto search = map.find("search")) read_search(*search, task);
   return task;
+}
+
+std::vector<std::string> task_variants(const std::filesystem::path& file) {
+  return config::variant_names(Value::parse(file, config::read_file(file)));
 }
 
 }  // namespace tenon

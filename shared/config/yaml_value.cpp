@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +15,6 @@ namespace {
 
 constexpr double kPositionMax_m = 100.0;
 constexpr double kRotationMax_rad = 3.1415926535897932;
-constexpr std::size_t kNameMax = 63;
 
 std::string text_of(double value) {
   std::array<char, 32> text{};
@@ -145,7 +145,7 @@ std::vector<Value> Value::list(std::size_t at_least, std::size_t at_most) const 
   for (const YAML::Node& node : node_) {
     values.push_back({file_, path_ + "[" + std::to_string(values.size()) + "]", node});
   }
-  return values;
+  return over_ == nullptr ? values : overlaid_by_name(values);
 }
 
 Vector3 Value::vector(const Bounds& bounds) const {
@@ -163,11 +163,76 @@ Pose Value::pose() const {
   return pose;
 }
 
+Value Value::overlaid_with(const Value& other) const {
+  assert(over_ == nullptr);
+  const bool merges = other.node_.IsMap() && (node_.IsMap() || node_.IsSequence());
+  if (!merges) return other;
+  Value merged = *this;
+  merged.over_ = std::make_shared<const Value>(other);
+  return merged;
+}
+
+std::vector<Value> Value::overlaid_by_name(const std::vector<Value>& values) const {
+  const auto named = [](const Value& value, const Entry& entry) {
+    const std::optional<Value> name = value.peek("name");
+    return name && name->node_.IsScalar() && name->node_.Scalar() == entry.key;
+  };
+  const std::vector<Entry> overs = over_->entries();
+  for (const Entry& over : overs) {
+    const bool found = std::any_of(values.begin(), values.end(),
+                                   [&](const Value& value) { return named(value, over); });
+    if (!found) over.key_value.refuse("is not a name in the list " + path_);
+  }
+  std::vector<Value> laid;
+  for (const Value& value : values) {
+    const auto over = std::find_if(overs.begin(), overs.end(),
+                                   [&](const Entry& entry) { return named(value, entry); });
+    laid.push_back(over == overs.end() ? value : value.overlaid_with(over->value));
+  }
+  return laid;
+}
+
+std::vector<Value::Entry> Value::entries() const {
+  const auto given = [](const std::vector<Entry>& entries, const std::string& key) {
+    return std::find_if(entries.begin(), entries.end(),
+                        [&key](const Entry& entry) { return entry.key == key; });
+  };
+  std::vector<Entry> own;
+  for (const auto& pair : node_) {
+    const std::string key = pair.first.IsScalar() ? pair.first.Scalar() : "?";
+    const std::string path = (path_.empty() ? "" : path_ + ".") + key;
+    const Value key_value(file_, path, pair.first);
+    if (given(own, key) != own.end()) key_value.refuse("is given twice");
+    // An empty value is refused by whoever reads it, at the line of its key.
+    own.push_back({key, key_value, {file_, path, pair.second}});
+  }
+  if (over_ == nullptr) return own;
+  // Built anew: assigning to a YAML::Node would change the file's node, aliases of it included.
+  const std::vector<Entry> overs = over_->entries();
+  std::vector<Entry> merged;
+  for (const Entry& under : own) {
+    const auto over = given(overs, under.key);
+    merged.push_back(over == overs.end() ? under
+                                         : Entry{under.key, under.key_value,
+                                                 under.value.overlaid_with(over->value)});
+  }
+  for (const Entry& over : overs) {
+    if (given(own, over.key) == own.end()) merged.push_back(over);
+  }
+  return merged;
+}
+
+std::vector<std::string> Value::keys() const {
+  if (!node_.IsMap()) refuse_value("a mapping");
+  std::vector<std::string> keys;
+  for (const Entry& entry : entries()) keys.push_back(entry.key_value.name());
+  return keys;
+}
+
 std::optional<Value> Value::peek(std::string_view key) const {
   if (!node_.IsMap()) return std::nullopt;
-  for (const auto& pair : node_) {
-    if (!pair.first.IsScalar() || pair.first.Scalar() != key) continue;
-    return Value(file_, (path_.empty() ? "" : path_ + ".") + std::string(key), pair.second);
+  for (const Entry& entry : entries()) {
+    if (entry.key == key) return entry.value;
   }
   return std::nullopt;
 }
@@ -176,16 +241,10 @@ Map::Map(const Value& value, std::initializer_list<std::string_view> keys) : val
   if (!value.node_.IsMap()) {
     value.refuse_value("a mapping with the keys " + joined(keys));
   }
-  for (const auto& pair : value.node_) {
-    const std::string key = pair.first.IsScalar() ? pair.first.Scalar() : "?";
-    const Value key_value(value.file_, (value.path_.empty() ? "" : value.path_ + ".") + key,
-                          pair.first);
-    if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-      key_value.refuse("is an unknown key, known here: " + joined(keys));
-    }
-    if (find(key)) key_value.refuse("is given twice");
-    // An empty value is refused by whoever reads it, at the line of its key.
-    entries_.push_back({key, Value(value.file_, key_value.path_, pair.second)});
+  entries_ = value.entries();
+  for (const Value::Entry& entry : entries_) {
+    if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
+    entry.key_value.refuse("is an unknown key, known here: " + joined(keys));
   }
 }
 
@@ -195,7 +254,7 @@ Value Map::at(std::string_view key) const {
 }
 
 std::optional<Value> Map::find(std::string_view key) const {
-  for (const Entry& entry : entries_) {
+  for (const Value::Entry& entry : entries_) {
     if (entry.key == key) return entry.value;
   }
   return std::nullopt;

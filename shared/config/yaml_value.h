@@ -19,6 +19,9 @@
 
 namespace tenon::config {
 
+/// What a plan file can hold of a name, bytes.
+inline constexpr std::size_t kNameMax = 63;
+
 /// An interval; the upper end belongs to it, the lower one unless `open_low`.
 struct Bounds {
   double low = 0.0;
@@ -56,8 +59,15 @@ class Value {
   /// {position_m: [x, y, z], rotation_rad: [rx, ry, rz]}, the rotation vector optional.
   [[nodiscard]] Pose pose() const;
 
+  /// This value with another laid over it. Mappings are merged key by key; over a list, a mapping
+  /// changes the entries whose `name` is one of its keys; anything else takes this value's place.
+  /// Everything keeps the line where it stands.
+  [[nodiscard]] Value overlaid_with(const Value& other) const;
+
   /// The value of a key before the mapping as a whole is checked, where other keys depend on it.
   [[nodiscard]] std::optional<Value> peek(std::string_view key) const;
+  /// The keys of a mapping whose keys are names, each once, in the file's order.
+  [[nodiscard]] std::vector<std::string> keys() const;
 
   /// "FILE:LINE: PATH: what"
   [[noreturn]] void refuse(const std::string& what) const;
@@ -66,13 +76,24 @@ class Value {
 
  private:
   friend class Map;
+  struct Entry;
   Value(std::shared_ptr<const std::string> file, std::string path, const YAML::Node& node);
+  /// Of a mapping, with what is laid over it; a key given twice is refused.
+  [[nodiscard]] std::vector<Entry> entries() const;
+  [[nodiscard]] std::vector<Value> overlaid_by_name(const std::vector<Value>& values) const;
   [[nodiscard]] std::string place() const;
   [[nodiscard]] const std::string& scalar(const std::string& must_be) const;
 
   std::shared_ptr<const std::string> file_;
   std::string path_;
   YAML::Node node_;
+  std::shared_ptr<const Value> over_;  ///< a mapping laid over this mapping or list
+};
+
+struct Value::Entry {
+  std::string key;
+  Value key_value;  ///< the key itself, for messages
+  Value value;
 };
 
 /// A mapping, none of whose keys is unknown or given twice.
@@ -90,12 +111,8 @@ class Map {
   [[nodiscard]] const Value& value() const { return value_; }
 
  private:
-  struct Entry {
-    std::string key;
-    Value value;
-  };
   Value value_;
-  std::vector<Entry> entries_;
+  std::vector<Value::Entry> entries_;
 };
 
 }  // namespace tenon::config

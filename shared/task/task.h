@@ -2,6 +2,7 @@
 // An assembly problem: what planner/tasks/*.yaml say. Loading stands in shared/config.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,12 @@ struct Shape {
   Pose pose;            ///< of its centre, in the tool frame (held) or the task frame
 };
 
+/// A part of space, in the task frame.
+struct BoxRegion {
+  Vector3 size_m = Vector3::Zero();  ///< edge lengths
+  Pose pose;                         ///< of its centre
+};
+
 /// A named nominal start.
 struct Start {
   std::string name;
@@ -35,8 +42,8 @@ struct Start {
 };
 
 struct Task {
-  std::string name;
-  std::uint64_t hash = 0;  ///< of the file's bytes
+  std::string name;        ///< that of a variant is "task/variant"
+  std::uint64_t hash = 0;  ///< of the file's bytes and the variant's name
   CoordinateMask coordinates = 0;
   std::vector<Shape> held;
   std::vector<Shape> environment;
@@ -46,6 +53,7 @@ struct Task {
   Pose goal;
   double goal_tolerance_m = 2e-3;     ///< d_tol
   double goal_uncertainty_m2 = 2e-6;  ///< u_tol
+  std::optional<BoxRegion> inserted;  ///< where every tool tip must end besides; see inserted.h
 
   // Primitives.
   double step_m = 0.10;
@@ -66,6 +74,7 @@ struct Task {
   double position_weight = 1.0;              ///< w_p
   double orientation_weight = 0.1;           ///< w_o, m per rad
   double attractor_ratio = 0.6;              ///< c_u
+  std::size_t attractor_samples = 0;         ///< drawn places, where start and goal do not suffice
   double time_limit_s = 60.0;
 
   Range friction{0.1, 0.3, 0.6};

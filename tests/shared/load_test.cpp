@@ -137,15 +137,15 @@ TEST(LoadTask, RefusesEachBadLineWithItsPlace) {
       {"box_m: [1, 2, 3]", "box_m: [1, 0, 3]",
        ":6: environment[0].box_m[1] = 0, must be in (0, 100]"},
       {"box_m: [1, 2, 3], ", "",
-       ":6: environment[0]: needs either box_m: [x, y, z] or cylinder: {diameter_m: d, length_m: "
-       "l}"},
+       ":6: environment[0]: needs one of box_m: [x, y, z], cylinder: {diameter_m: d, length_m: l}, "
+       "ring: {inner_diameter_m: i, outer_diameter_m: o, length_m: l}"},
       {"length_m: 0.1", "length: 0.1",
        ":4: held[0].cylinder.length: is an unknown key, known here: diameter_m, length_m"},
       {"length_m: 0.1", "length_m: 0.1, diameter_m: 1",
        ":4: held[0].cylinder.diameter_m: is given twice"},
       {"name: tiny\n", "name: tiny\ncolour: red\n",
        ":2: colour: is an unknown key, known here: name, coordinates, held, environment, starts, "
-       "particle_sigmas, goal, primitives, speeds, contact, compliance, search, physics"},
+       "particle_sigmas, goal, primitives, speeds, contact, compliance, search, physics, variants"},
       {"name: tiny\n", "", ":1: the required key name is missing"},
       {"name: tiny", "name: tin\xC3\xBF",
        ":1: name = tin\xC3\xBF, must be a name of 1 to 63 printable ASCII characters"},
@@ -212,7 +212,7 @@ TEST(LoadRobot, ReadsEveryValue) {
   EXPECT_EQ(robot.joints[1].following_error_max, 0.01);
   EXPECT_EQ(robot.joints[1].stiffness, 2e4);
   EXPECT_EQ(robot.sensor.torque_per_count_Nm, 0.0005);
-  EXPECT_EQ(robot.response_lag_s, 0.004);
+  EXPECT_EQ(robot.response_lag_s, 0.008);
   EXPECT_EQ(robot.measurement_delay_cycles, 1);
 
   folder.put("packed.yaml",
@@ -252,6 +252,9 @@ TEST(LoadRobot, RefusesEachBadLineWithItsPlace) {
        ":14: joints[0].stiffness_Nmpr = 0, must be in (0, 1e+09]"},
       {"force_range_N: 300", "force_range_N: 400",
        ":27: sensor.force_range_N = 400, must be in (0, 327.67]"},
+      {"response_lag_s: 0.008", "response_lag_s: 0.0079",
+       ":4: arm.response_lag_s = 0.0079, must be at least 0.008 s, the two cycles that CANopen "
+       "takes"},
       {"urdf: slide.urdf\n", "", ":1: the required key urdf is missing"},
   };
   expect_refusals(kSlideRobot, lines,
