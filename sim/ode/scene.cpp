@@ -4,6 +4,8 @@
 #include <array>
 #include <cassert>
 
+#include "sim/ode/contact_points.h"
+
 namespace tenon::sim {
 namespace {
 
@@ -34,8 +36,7 @@ bool boxes_overlap(dGeomID a, dGeomID b) {
 }  // namespace
 
 Scene::Scene(const std::vector<Shape>& held, const std::vector<Shape>& environment,
-             const Pose& X_WT)
-    : feedback_(kPoints) {
+             const Pose& X_WT) {
   for (const Shape& shape : held) {
     held_names_.push_back(shape.name);
     held_offsets_.push_back(shape.pose);
@@ -67,44 +68,51 @@ void Scene::attach(dBodyID body, const Pose& X_BP) {
 
 Scene::Contacts Scene::collide(OdeWorld& world, double step_s, const Surface& surface) {
   Contacts result;
-  points_ = 0;
+  points_.clear();
   touching_.clear();
-  std::array<dContact, kPointsAPair> contacts;
+  std::array<dContactGeom, kPointsAPair> found;
   for (std::size_t h = 0; h < held_.size(); ++h) {
     for (std::size_t e = 0; e < environment_.size(); ++e) {
       if (!boxes_overlap(held_[h], environment_[e])) continue;
-      const int found =
-          dCollide(held_[h], environment_[e], kPointsAPair, &contacts[0].geom, sizeof(dContact));
-      if (found == 0) continue;
+      const int count =
+          dCollide(held_[h], environment_[e], kPointsAPair, found.data(), sizeof(dContactGeom));
+      if (count == 0) continue;
       touching_.push_back({h, e});
-      // The pair's stiffness and damping, shared out; ODE's erp and cfm are an implicit spring.
-      const double spring = step_s * surface.stiffness_Npm / found;
-      const double damper = surface.relaxation_s * surface.stiffness_Npm / found;
-      for (int i = 0; i < found && points_ < kPoints; ++i) {
-        dContact& contact = contacts[static_cast<std::size_t>(i)];
-        contact.surface = {};
-        contact.surface.mode =
-            dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactMotionN;
-        contact.surface.mu = surface.friction;
-        contact.surface.soft_erp = spring / (spring + damper);
-        contact.surface.soft_cfm = 1.0 / (spring + damper);
-        contact.surface.motionN = kDistinctVelocity_mps * static_cast<double>(points_ + 1);
-        result.depth_max_m = std::max(result.depth_max_m, static_cast<double>(contact.geom.depth));
-        const dJointID joint = dJointCreateContact(world.id(), world.contacts(), &contact);
-        dJointAttach(joint, dGeomGetBody(held_[h]), nullptr);
-        dJointSetFeedback(joint, &feedback_[points_]);
-        ++points_;
-      }
+      points_.insert(points_.end(), found.begin(), found.begin() + count);
     }
   }
-  result.points = points_;
+  for (const dContactGeom& point : points_) {
+    result.depth_max_m = std::max(result.depth_max_m, static_cast<double>(point.depth));
+  }
+  thin_out(points_);
+  result.points = points_.size();
+  make_joints(world, step_s, surface);
   return result;
+}
+
+void Scene::make_joints(OdeWorld& world, double step_s, const Surface& surface) {
+  const std::vector<double> sharing = sharers(points_);
+  feedback_.resize(points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    // A face's stiffness and damping, shared out; ODE's erp and cfm are an implicit spring.
+    const double spring = step_s * surface.stiffness_Npm / sharing[i];
+    const double damper = surface.relaxation_s * surface.stiffness_Npm / sharing[i];
+    dContact contact{};
+    contact.geom = points_[i];
+    contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactMotionN;
+    contact.surface.mu = surface.friction;
+    contact.surface.soft_erp = spring / (spring + damper);
+    contact.surface.soft_cfm = 1.0 / (spring + damper);
+    contact.surface.motionN = kDistinctVelocity_mps * static_cast<double>(i + 1);
+    const dJointID joint = dJointCreateContact(world.id(), world.contacts(), &contact);
+    dJointAttach(joint, dGeomGetBody(contact.geom.g1), nullptr);
+    dJointSetFeedback(joint, &feedback_[i]);
+  }
 }
 
 Vector6 Scene::wrench() const {
   Vector6 sum = Vector6::Zero();
-  for (std::size_t i = 0; i < points_; ++i) {
-    const dJointFeedback& f = feedback_[i];
+  for (const dJointFeedback& f : feedback_) {
     sum.head<3>() += Vector3(f.f1[0], f.f1[1], f.f1[2]);
     sum.tail<3>() += Vector3(f.t1[0], f.t1[1], f.t1[2]);
   }

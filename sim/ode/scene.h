@@ -14,8 +14,8 @@
 
 namespace tenon::sim {
 
-/// How two surfaces meet. The stiffness is that of a whole face: it is shared out among the contact
-/// points of a pair of shapes.
+/// How two surfaces meet. The stiffness is that of a whole face, however many shapes it is made of:
+/// it is shared out among its contact points.
 struct Surface {
   double friction = 0.3;
   double stiffness_Npm = 5e4;
@@ -64,15 +64,16 @@ class Scene {
 
  private:
   static constexpr int kPointsAPair = 8;
-  static constexpr std::size_t kPoints = 64;
+
+  void make_joints(OdeWorld& world, double step_s, const Surface& surface);
 
   std::vector<std::string> held_names_;
   std::vector<std::string> environment_names_;
   std::vector<dGeomID> held_;
   std::vector<Pose> held_offsets_;
   std::vector<dGeomID> environment_;
-  std::vector<dJointFeedback> feedback_;
-  std::size_t points_ = 0;
+  std::vector<dContactGeom> points_;      // of the last collide(), thinned out
+  std::vector<dJointFeedback> feedback_;  // one a point
   std::vector<Pair> touching_;
 };
 
