@@ -17,16 +17,15 @@ std::size_t cycles_in(double duration_s, double cycle_s) {
 
 }  // namespace
 
-CycleRunner::CycleRunner(Arm& arm, Controller& controller, CycleSink* sink,
-                         const Parameters& parameters)
+CycleRunner::CycleRunner(Arm& arm, ControlTask& task, CycleSink* sink, const Parameters& parameters)
     : arm_(arm),
-      controller_(controller),
+      task_(task),
       sink_(sink),
       parameters_(parameters),
-      cycle_ns_(std::int64_t{1000} * controller.cell().robot.cycle_us),
+      cycle_ns_(std::int64_t{1000} * task.cell().robot.cycle_us),
       late_(parameters.late),
       incomplete_(parameters.incomplete),
-      black_box_(cycles_in(parameters.black_box_s, controller.cycle_s())) {}
+      black_box_(cycles_in(parameters.black_box_s, task.cycle_s())) {}
 
 void CycleRunner::begin(std::int64_t now_ns) noexcept {
   feedback_.joints_fresh = 0;
@@ -38,27 +37,27 @@ bool CycleRunner::finish(std::int64_t now_ns) noexcept {
   count_answers(arm_.receive(now_ns, feedback_));
   decide(now_ns);
   publish(0, 0);
-  return !controller_.finished();
+  return !task_.finished();
 }
 
 void CycleRunner::count_answers(bool complete) noexcept {
   if (complete) return incomplete_.good();
   ++statistics_.incomplete_cycles;
   incomplete_.late(1);
-  controller_.report_late_sync();
-  if (incomplete_.full()) controller_.report_poor_feedback(statistics_.incomplete_cycles);
+  task_.report_late_sync();
+  if (incomplete_.full()) task_.report_poor_feedback(statistics_.incomplete_cycles);
 }
 
 void CycleRunner::decide(std::int64_t now_ns) noexcept {
   feedback_.state = arm_.state();
   feedback_.fault = arm_.fault();
-  const Controller::Command command = controller_.cycle(now_ns, feedback_);
+  const ControlTask::Command command = task_.cycle(now_ns, feedback_);
   arm_.command(now_ns, command.request, command.position);
   ++statistics_.cycles;
 }
 
 void CycleRunner::publish(std::int64_t wakeup_late_ns, std::int64_t compute_ns) noexcept {
-  CycleRecord record = controller_.record();
+  CycleRecord record = task_.record();
   record.wakeup_late_ns = wakeup_late_ns;
   record.compute_ns = compute_ns;
   record.late_cycles = static_cast<std::uint32_t>(statistics_.late_cycles);
@@ -72,11 +71,11 @@ void CycleRunner::run(const std::atomic<bool>& stop) noexcept {
   const auto late_sync_ns = static_cast<std::int64_t>(kLateSync * static_cast<double>(cycle_ns_));
   std::int64_t due_ns = MonotonicClock::now_ns() + cycle_ns_;
   std::int64_t last_awake_ns = due_ns;
-  while (!controller_.finished()) {
+  while (!task_.finished()) {
     MonotonicClock::wait_until(due_ns);
     const std::int64_t awake_ns = MonotonicClock::now_ns();
-    if (stop.load(std::memory_order_relaxed)) controller_.request_stop();
-    if (awake_ns - last_awake_ns > late_sync_ns) controller_.report_late_sync();
+    if (stop.load(std::memory_order_relaxed)) task_.request_stop();
+    if (awake_ns - last_awake_ns > late_sync_ns) task_.report_late_sync();
     last_awake_ns = awake_ns;
 
     begin(awake_ns);
@@ -108,7 +107,7 @@ std::int64_t CycleRunner::next_due(std::int64_t due_ns, std::int64_t now_ns) noe
   const std::int64_t skipped = (now_ns - due_ns) / cycle_ns_ + 1;
   statistics_.late_cycles += static_cast<std::uint64_t>(skipped);
   late_.late(skipped);
-  if (late_.full()) controller_.report_overruns(statistics_.late_cycles);
+  if (late_.full()) task_.report_overruns(statistics_.late_cycles);
   return due_ns + skipped * cycle_ns_;
 }
 

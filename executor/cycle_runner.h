@@ -1,13 +1,13 @@
 #pragma once
-// The loop around a controller: opens a cycle on the arm (SYNC), takes feedback until it is
-// complete or late, lets the controller decide, and sends the setpoints. run() does so on the
+// The loop around a task of the control cycle: opens a cycle on the arm (SYNC), takes feedback
+// until it is complete or late, lets the task decide, and sends the setpoints. run() does so on the
 // clock, begin() and finish() without one, for virtual time. Real-time after construction, one
-// thread; refers to arm, controller and sink, which must outlive it.
+// thread; refers to arm, task and sink, which must outlive it.
 
 #include <atomic>
 #include <cstdint>
 
-#include "executor/controller.h"
+#include "executor/control_task.h"
 #include "executor/leaky_bucket.h"
 #include "executor/telemetry/black_box.h"
 #include "executor/telemetry/cycle_record.h"
@@ -29,7 +29,7 @@ class CycleSink {
 class CycleRunner {
  public:
   struct Parameters {
-    double feedback_deadline = 0.7;  ///< share of the cycle after which the controller goes ahead
+    double feedback_deadline = 0.7;  ///< share of the cycle after which the task goes ahead
     double black_box_s = 1.0;
     LeakyBucket::Parameters late;
     /// Each cycle without its feedback costs some of the plan's accuracy, which no envelope sees:
@@ -46,7 +46,7 @@ class CycleRunner {
   };
 
   /// @param sink may be null
-  CycleRunner(Arm& arm, Controller& controller, CycleSink* sink, const Parameters& parameters);
+  CycleRunner(Arm& arm, ControlTask& task, CycleSink* sink, const Parameters& parameters);
   CycleRunner(const CycleRunner&) = delete;
   CycleRunner& operator=(const CycleRunner&) = delete;
 
@@ -73,7 +73,7 @@ class CycleRunner {
   [[nodiscard]] std::int64_t next_due(std::int64_t due_ns, std::int64_t now_ns) noexcept;
 
   Arm& arm_;
-  Controller& controller_;
+  ControlTask& task_;
   CycleSink* sink_;
   Parameters parameters_;
   std::int64_t cycle_ns_;

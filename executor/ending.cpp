@@ -1,7 +1,6 @@
 #include "executor/ending.h"
 
-#include <array>
-#include <cstdio>
+#include <cmath>
 
 #include "shared/base/text.h"
 
@@ -94,6 +93,10 @@ const char* to_string(EndReason reason) {
       return "other_branch";
     case EndReason::kFeedbackPoor:
       return "feedback_poor";
+    case EndReason::kMeasured:
+      return "measured";
+    case EndReason::kNothingMet:
+      return "nothing_met";
   }
   return "?";
 }
@@ -108,6 +111,8 @@ EndManner end_manner(EndReason reason) {
     case EndReason::kTareUnsteady:
     case EndReason::kTareMoving:
     case EndReason::kEnableTimeout:
+    case EndReason::kMeasured:
+    case EndReason::kNothingMet:
       return EndManner::kHold;
     case EndReason::kStopRequested:
     case EndReason::kContactOnApproach:
@@ -226,6 +231,11 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kFeedbackPoor:
       return format("feedback was missing in %.0f cycles, too many for what the plan was made for",
                     e.value);
+    case EndReason::kMeasured:
+      return "all readings are taken";
+    case EndReason::kNothingMet:
+      return format("nothing was met within %g m along %c%s", std::abs(e.value),
+                    e.value < 0.0 ? '-' : '+', axis_name(e.index));
   }
   return "?";
 }

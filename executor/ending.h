@@ -36,6 +36,8 @@ enum class EndReason : std::uint8_t {
   kOverruns = 20,         ///< value: late cycles; the control loop cannot keep its period
   kOtherBranch = 21,   ///< the tool is at the start, index: this joint is not; value, wanted, bound
   kFeedbackPoor = 22,  ///< value: cycles without all of their feedback, too many of all
+  kMeasured = 23,      ///< an identification has all its readings
+  kNothingMet = 24,    ///< by an identification's motion; index: axis; value: way, m, signed
 };
 [[nodiscard]] const char* to_string(EndReason reason);
 

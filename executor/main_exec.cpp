@@ -15,7 +15,6 @@
 #include "executor/dry_run/dry_run.h"
 #include "executor/dry_run/dry_run_report.h"
 #include "executor/identification/identification.h"
-#include "executor/identification/identification_runner.h"
 #include "executor/monotonic_clock.h"
 #include "executor/plan_check.h"
 #include "executor/realtime.h"
@@ -108,36 +107,6 @@ void ask_for_real_time(const Options& options) {
   for (const std::string& line : missing) std::fprintf(stderr, "real time: %s\n", line.c_str());
 }
 
-// Everything that lives on the real-time thread: real time, the drives' bring-up, the run. Asked to
-// stop during the bring-up, the run ends before anything is enabled.
-template <typename Runner>
-void run_arm(const Options& options, const Robot& robot, Arm& arm, Runner& runner) {
-  ask_for_real_time(options);
-  constexpr std::int64_t kPoll_ns = 1'000'000;
-  std::int64_t now_ns = MonotonicClock::now_ns();
-  while (!stop_asked.load(std::memory_order_relaxed) && !arm.prepare(now_ns)) {
-    if (arm.state() == ArmState::kFault) throw InputError(hw::describe(arm.fault(), robot));
-    arm.wait(kPoll_ns);
-    now_ns = MonotonicClock::now_ns();
-  }
-  runner.run(stop_asked);
-}
-
-// What the work threw, if it did.
-template <typename Work>
-std::exception_ptr on_real_time_thread(Work work) {
-  std::exception_ptr failure;
-  std::thread real_time([&] {
-    try {
-      work();
-    } catch (...) {
-      failure = std::current_exception();
-    }
-  });
-  real_time.join();
-  return failure;
-}
-
 void print_opening(const Plan& plan, const Cell& cell, const DryRun& dry_run) {
   const hw::BusLoad load = hw::bus_load(cell.robot);
   std::printf("plan '%s', start '%s', %d steps; cell '%s', robot '%s'\n", plan.task_name.c_str(),
@@ -193,77 +162,128 @@ void check_outputs(const Options& options) {
   check_writable(options.black_box);
 }
 
-int run_plan(const Options& options, const Cell& cell, const DryRun& dry_run) {
-  const Plan& plan = dry_run.plan;
-  const std::unique_ptr<CanBus> bus =
-      hw::open_bus(options.can, cell.robot.bitrate_bps, hw::master_frames(cell.robot));
-  std::unique_ptr<CanLog> can_log;
-  std::optional<hw::RecordingBus> recording_bus;
-  if (!options.can_log.empty()) {
-    can_log = std::make_unique<CanLog>(options.can_log);
-    recording_bus.emplace(*bus, can_log->ring());
+// One task on the arm: bus, loop, and everything that writes along.
+class TaskRun {
+ public:
+  /// @param steps of the plan that the task runs, null where it runs none
+  TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps)
+      : options_(options),
+        task_(task),
+        bus_(hw::open_bus(options.can, robot().bitrate_bps, hw::master_frames(robot()))),
+        can_log_(options.can_log.empty() ? nullptr : std::make_unique<CanLog>(options.can_log)),
+        logged_bus_(can_log_ ? std::make_unique<hw::RecordingBus>(*bus_, can_log_->ring())
+                             : nullptr),
+        arm_(robot(), logged_bus_ ? static_cast<CanBus&>(*logged_bus_) : *bus_),
+        runner_(arm_, task, recorder_.get(), {}),
+        telemetry_(outputs(options), robot().joints.size(), steps, *recorder_) {
+    recorder_->add(telemetry_);
+    if (can_log_) recorder_->add(*can_log_);
   }
-  hw::CanopenArm arm(cell.robot, recording_bus ? static_cast<CanBus&>(*recording_bus) : *bus);
 
+  /// Before run(); outlives it.
+  void add(RecordConsumer& consumer) { recorder_->add(consumer); }
+
+  /// To the end of the task. @throws what the bring-up throws
+  void run() {
+    recorder_->start();
+    std::exception_ptr failure;
+    std::thread real_time([&] {
+      try {
+        run_arm();
+      } catch (...) {
+        failure = std::current_exception();
+      }
+    });
+    real_time.join();
+    recorder_->stop();
+    if (can_log_) can_log_->drain();
+    if (failure) std::rethrow_exception(failure);
+  }
+
+  [[nodiscard]] const CycleRunner& runner() const { return runner_; }
+  [[nodiscard]] std::uint64_t records_dropped() const { return recorder_->dropped(); }
+  [[nodiscard]] std::string arm_fault_text() const {
+    return hw::describe(task_.ending().arm_fault, robot());
+  }
+
+  /// Tells what came of it, everywhere. @return the exit status
+  int conclude(const RunResult& result) {
+    telemetry_.publish_summary(result, task_.record());
+    print_closing(result);
+    if (result.ended_badly()) {
+      runner_.black_box().write_csv(options_.black_box);
+      std::fprintf(stderr, "tenon-exec: the last second is in %s\n", options_.black_box.c_str());
+    }
+    write_json(options_.json, to_json(result, task_.cell()));
+    return result.exit_code;
+  }
+
+ private:
+  static std::vector<std::shared_ptr<lcm::LCM>> outputs(const Options& options) {
+    std::vector<std::string> warnings;
+    auto opened = open_telemetry(options.lcm_url, options.log, warnings);
+    for (const std::string& line : warnings) std::fprintf(stderr, "%s\n", line.c_str());
+    return opened;
+  }
+
+  // Everything that lives on the real-time thread: real time, the drives' bring-up, the run. Asked
+  // to stop during the bring-up, the run ends before anything is enabled.
+  void run_arm() {
+    ask_for_real_time(options_);
+    constexpr std::int64_t kPoll_ns = 1'000'000;
+    std::int64_t now_ns = MonotonicClock::now_ns();
+    while (!stop_asked.load(std::memory_order_relaxed) && !arm_.prepare(now_ns)) {
+      if (arm_.state() == ArmState::kFault) throw InputError(hw::describe(arm_.fault(), robot()));
+      arm_.wait(kPoll_ns);
+      now_ns = MonotonicClock::now_ns();
+    }
+    runner_.run(stop_asked);
+  }
+
+  [[nodiscard]] const Robot& robot() const { return task_.cell().robot; }
+
+  const Options& options_;
+  ControlTask& task_;
+  std::unique_ptr<CanBus> bus_;
+  std::unique_ptr<CanLog> can_log_;
+  std::unique_ptr<hw::RecordingBus> logged_bus_;
+  hw::CanopenArm arm_;
+  std::unique_ptr<Recorder> recorder_ = std::make_unique<Recorder>();
+  CycleRunner runner_;
+  Telemetry telemetry_;
+};
+
+int run_plan(const Options& options, const Cell& cell, const DryRun& dry_run) {
   Controller::Parameters parameters;
   parameters.go_to_start = options.go_to_start;
   Controller controller(cell, dry_run, parameters);
-  const auto recorder = std::make_unique<Recorder>();
-  CycleRunner runner(arm, controller, recorder.get(), {});
-
-  std::vector<std::string> warnings;
-  Telemetry telemetry(open_telemetry(options.lcm_url, options.log, warnings), controller,
-                      *recorder);
-  for (const std::string& line : warnings) std::fprintf(stderr, "%s\n", line.c_str());
+  TaskRun run(options, controller, &controller.runner());
   StepPrinter printer(controller.runner());
-  recorder->add(telemetry);
-  recorder->add(printer);
+  run.add(printer);
   std::optional<TraceWriter> trace;
-  if (!options.trace.empty()) {
-    trace.emplace(options.trace, controller.runner());
-    recorder->add(*trace);
-  }
-  if (can_log != nullptr) recorder->add(*can_log);
-
-  recorder->start();
-  const std::exception_ptr failure =
-      on_real_time_thread([&] { run_arm(options, cell.robot, arm, runner); });
-  recorder->stop();
-  if (can_log != nullptr) can_log->drain();
-  if (failure) std::rethrow_exception(failure);
-
-  const RunResult result = gather_result(controller, runner, recorder->dropped(),
-                                         hw::describe(controller.ending().arm_fault, cell.robot));
-  telemetry.publish_summary(result, controller.record());
-  print_closing(result);
-  if (result.exit_code != 0 && result.reason != EndReason::kStopRequested) {
-    runner.black_box().write_csv(options.black_box);
-    std::fprintf(stderr, "tenon-exec: the last second is in %s\n", options.black_box.c_str());
-  }
-  write_json(options.json, to_json(result, plan, cell));
-  return result.exit_code;
+  if (!options.trace.empty()) run.add(trace.emplace(options.trace, controller.runner()));
+  run.run();
+  return run.conclude(
+      gather_result(controller, run.runner(), run.records_dropped(), run.arm_fault_text()));
 }
 
 int identify(const Options& options, const Cell& cell) {
   const std::unique_ptr<Identification> identification =
       options.identify_payload ? make_payload_identification(cell)
                                : make_contact_identification(cell, options.identify_contact);
-  const std::unique_ptr<CanBus> bus =
-      hw::open_bus(options.can, cell.robot.bitrate_bps, hw::master_frames(cell.robot));
-  hw::CanopenArm arm(cell.robot, *bus);
-  IdentificationRunner runner(arm, identification->motion());
-  const std::exception_ptr failure =
-      on_real_time_thread([&] { run_arm(options, cell.robot, arm, runner); });
-  if (failure) std::rethrow_exception(failure);
-
-  const Ending& ending = identification->motion().ending();
-  if (ending.reason != EndReason::kNone) {
-    const std::string fault = hw::describe(ending.arm_fault, cell.robot);
-    std::fprintf(stderr, "tenon-exec: %s\n", describe(ending, Plan{}, cell, fault).c_str());
-    return 1;
-  }
-  std::fputs(identification->report().c_str(), stdout);
-  return identification->found() ? 0 : 1;
+  const ControlTask& task = identification->motion();
+  std::printf("identifying the %s; cell '%s', robot '%s', cycle %g ms\n",
+              options.identify_payload ? "payload" : "contact", cell.name.c_str(),
+              cell.robot.name.c_str(), 1e3 * task.cycle_s());
+  std::fflush(stdout);
+  TaskRun run(options, identification->motion(), nullptr);
+  run.run();
+  std::optional<Finding> finding;
+  if (task.ending().reason == EndReason::kMeasured) finding = identification->finding();
+  // Its first line is the result's message.
+  if (finding) std::fputs(finding->report.substr(finding->report.find('\n') + 1).c_str(), stdout);
+  return run.conclude(
+      gather_result(task, finding, run.runner(), run.records_dropped(), run.arm_fault_text()));
 }
 
 int execute(const Options& options) {
@@ -295,32 +315,33 @@ int parse_and_execute(int argc, char** argv) {
   app.footer(
       "Example:\n  tenon-exec --cell hw/cells/gantry3.yaml --plan plan.tnp \\\n"
       "             --can slcan://127.0.0.1:29536 --log run.lcmlog --json result.json\n\n"
-      "Exit status: 0 the plan is done (--dry-run: can be), 1 it failed or was stopped, 2 bad "
-      "input.");
+      "Exit status: 0 the plan is done (--dry-run: can be) or something identified, 1 it failed or "
+      "was stopped, 2 bad input.");
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--cell", options.cell, "cell file (YAML)")->required();
-  CLI::Option* plan = app.add_option("--plan", options.plan, "plan file (.tnp)");
+  std::vector<CLI::Option*> of_a_plan = {
+      app.add_option("--plan", options.plan, "plan file (.tnp)"),
+      app.add_flag("--dry-run", options.dry_run,
+                   "only go through the plan with the cell's arm in mind; needs no --can"),
+      app.add_flag("--go-to-start", options.go_to_start, "move to the plan's start first"),
+      app.add_option("--trace", options.trace, "inputs of every guarded move, to replay")};
   app.add_option("--can", options.can, "socketcan:can0, slcan:/dev/ttyACM0 or slcan://HOST:PORT");
-  app.add_flag("--dry-run", options.dry_run,
-               "only go through the plan with the cell's arm in mind; needs no --can");
   app.add_option("--rt", options.rt, "real time: require, prefer or off")
       ->check(CLI::IsMember({"require", "prefer", "off"}))
       ->capture_default_str();
   app.add_option("--cpu", options.cpu, "processor for the control loop")
       ->check(CLI::Range(0, 1023));
-  app.add_flag("--go-to-start", options.go_to_start, "move to the plan's start first");
   CLI::Option* payload = app.add_flag("--identify-payload", options.identify_payload,
                                       "instead of a plan: payload and sensor bias, in some poses");
-  app.add_option("--identify-contact", options.identify_contact,
-                 "instead of a plan: stiffness and lag at what stands along x, -x, y, -y, z or -z")
-      ->excludes(plan)
-      ->excludes(payload);
-  payload->excludes(plan);
+  CLI::Option* contact = app.add_option(
+      "--identify-contact", options.identify_contact,
+      "instead of a plan: stiffness and lag at what stands along x, -x, y, -y, z or -z");
+  contact->excludes(payload);
+  for (CLI::Option* option : of_a_plan) option->excludes(payload)->excludes(contact);
   app.add_option("--lcm-url", options.lcm_url, "where telemetry goes, or none")
       ->capture_default_str();
   app.add_option("--log", options.log, "telemetry log for lcm-logplayer");
   app.add_option("--can-log", options.can_log, "frames in candump's format");
-  app.add_option("--trace", options.trace, "inputs of every guarded move, to replay");
   app.add_option("--json", options.json, "result, - for standard output");
   app.add_option("--black-box", options.black_box, "the last second as CSV, after a fault")
       ->capture_default_str();

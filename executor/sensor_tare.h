@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "executor/ending.h"
 #include "shared/cell/robot.h"
 #include "shared/math/pose.h"
 
@@ -80,5 +81,14 @@ class SensorTare {
   Vector6 mean_ = Vector6::Zero();
   Vector6 squares_ = Vector6::Zero();
 };
+
+/// How a run ends whose sensor was kUnsteady.
+[[nodiscard]] inline Ending unsteady(const SensorTare& tare) {
+  const int axis = tare.worst_axis();
+  return {.reason = EndReason::kTareUnsteady,
+          .index = axis,
+          .value = tare.deviation(axis),
+          .bound = tare.deviation_max(axis)};
+}
 
 }  // namespace tenon::executor

@@ -37,7 +37,7 @@ State next_state(State state, Event event) {
           return State::kDisabling;
         case Event::kTared:
         case Event::kAtStart:
-        case Event::kPlanEnded:
+        case Event::kWorkEnded:
         case Event::kAtRest:
         case Event::kHeld:
         case Event::kDisabled:
@@ -54,7 +54,7 @@ State next_state(State state, Event event) {
           return State::kQuickStopping;
         case Event::kEnabled:
         case Event::kAtStart:
-        case Event::kPlanEnded:
+        case Event::kWorkEnded:
         case Event::kAtRest:
         case Event::kHeld:
         case Event::kDisabled:
@@ -71,7 +71,7 @@ State next_state(State state, Event event) {
           return State::kQuickStopping;
         case Event::kEnabled:
         case Event::kTared:
-        case Event::kPlanEnded:
+        case Event::kWorkEnded:
         case Event::kAtRest:
         case Event::kHeld:
         case Event::kDisabled:
@@ -80,7 +80,7 @@ State next_state(State state, Event event) {
       break;
     case State::kRunning:
       switch (event) {
-        case Event::kPlanEnded:
+        case Event::kWorkEnded:
           return State::kHolding;
         case Event::kStop:
           return State::kStopping;
@@ -104,7 +104,7 @@ State next_state(State state, Event event) {
         case Event::kEnabled:
         case Event::kTared:
         case Event::kAtStart:
-        case Event::kPlanEnded:
+        case Event::kWorkEnded:
         case Event::kStop:
         case Event::kHeld:
         case Event::kDisabled:
@@ -118,7 +118,7 @@ State next_state(State state, Event event) {
         case Event::kEnabled:
         case Event::kTared:
         case Event::kAtStart:
-        case Event::kPlanEnded:
+        case Event::kWorkEnded:
         case Event::kStop:
         case Event::kFault:
         case Event::kHeld:
@@ -135,7 +135,7 @@ State next_state(State state, Event event) {
         case Event::kEnabled:
         case Event::kTared:
         case Event::kAtStart:
-        case Event::kPlanEnded:
+        case Event::kWorkEnded:
         case Event::kStop:
         case Event::kAtRest:
         case Event::kDisabled:
@@ -149,7 +149,7 @@ State next_state(State state, Event event) {
         case Event::kEnabled:
         case Event::kTared:
         case Event::kAtStart:
-        case Event::kPlanEnded:
+        case Event::kWorkEnded:
         case Event::kStop:
         case Event::kFault:
         case Event::kAtRest:

@@ -1,8 +1,9 @@
 #pragma once
-// The states of a run and what leads from one to the next. A pure function; any thread.
+// The states of a task of the control cycle (control_task.h) and what leads from one to the next. A
+// pure function; any thread.
 //
 //   kWaiting --enabled--> kTaring --tared--> kApproaching --at start--> kRunning --+
-//      |                     |                    | stop                   | stop  | plan ended
+//      |                     |                    | stop                   | stop  | work ended
 //      |                     | stop               +-----> kStopping <------+       |
 //      |                     |                               | at rest             |
 //      |                     +---------> kHolding <----------+---------------------+
@@ -22,8 +23,8 @@ namespace tenon::executor {
 enum class State : std::uint8_t {
   kWaiting = 0,        ///< for the drives to be enabled
   kTaring = 1,         ///< holding still, averaging the sensor
-  kApproaching = 2,    ///< on the way to the plan's start
-  kRunning = 3,        ///< the plan
+  kApproaching = 2,    ///< on the way to the plan's start; an identification has none
+  kRunning = 3,        ///< the plan, or the motion of an identification
   kStopping = 4,       ///< the commanded motion ramps down
   kQuickStopping = 5,  ///< the drives ramp down by themselves
   kHolding = 6,        ///< at rest, still compliant
@@ -37,9 +38,9 @@ enum class Event : std::uint8_t {
   kEnabled = 0,  ///< the arm follows setpoints
   kTared = 1,
   kAtStart = 2,
-  kPlanEnded = 3,
-  kStop = 4,   ///< ramp down in good order
-  kFault = 5,  ///< stop by the drives
+  kWorkEnded = 3,  ///< the plan, or the motion of an identification
+  kStop = 4,       ///< ramp down in good order
+  kFault = 5,      ///< stop by the drives
   kAtRest = 6,
   kHeld = 7,
   kDisabled = 8,

@@ -120,6 +120,7 @@ void BringUp::enter_state(State state, std::int64_t now_ns, CanBus& bus) {
   state_ = state;
   entered_ns_ = now_ns;
   task_ = 0;
+  comparing_ = false;
   transfer_ = Transfer::kNone;
   switch (state) {
     case State::kBootUp:
@@ -173,6 +174,9 @@ void BringUp::run_tasks(State next, std::int64_t now_ns, CanBus& bus) {
   if (state_ == State::kFailed || transfer_ != Transfer::kNone) {
     return;
   }
+  while (task_ < tasks.size() && same_ && tasks[task_].setting.action == Action::kWriteIfOther) {
+    next_task();
+  }
   if (task_ == tasks.size()) {
     enter_state(next, now_ns, bus);
     return;
@@ -182,7 +186,9 @@ void BringUp::run_tasks(State next, std::int64_t now_ns, CanBus& bus) {
   switch (task.setting.action) {
     case Action::kWrite:
     case Action::kWriteIfExists:
+    case Action::kWriteIfOther:
       return start_writing(task, now_ns, bus);
+    case Action::kCompare:
     case Action::kExpect:
     case Action::kAwait:
     case Action::kRecord:
@@ -215,6 +221,9 @@ void BringUp::finish_transfer(const Task& task, std::int64_t now_ns, CanBus& bus
                             sdo_.abort_code() == tenon::canopen::kAbortSubIndex)) {
         return next_task();
       }
+      if (task.setting.action == Action::kCompare) {
+        return finish_comparing(false);
+      }
       return fail(ArmFaultKind::kConfiguration, task.node, task.setting.object(),
                   sdo_.abort_code());
     case SdoClient::State::kDone:
@@ -233,6 +242,9 @@ void BringUp::finish_reading(const Task& task, std::int64_t now_ns, CanBus& bus)
     record(task, sdo_.value());
     return next_task();
   }
+  if (task.setting.action == Action::kCompare) {
+    return finish_comparing(task.setting.matches(sdo_.value()));
+  }
   if (task.setting.matches(sdo_.value())) {
     return next_task();
   }
@@ -244,8 +256,15 @@ void BringUp::finish_reading(const Task& task, std::int64_t now_ns, CanBus& bus)
        task.setting.object(), sdo_.value());
 }
 
+void BringUp::finish_comparing(bool same) {
+  same_ = same && (same_ || !comparing_);
+  next_task();
+  comparing_ = true;
+}
+
 void BringUp::next_task() {
   ++task_;
+  comparing_ = false;
   transfer_ = Transfer::kNone;
 }
 

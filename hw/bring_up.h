@@ -82,6 +82,7 @@ class BringUp {
   void start_reading(const Task& task, std::int64_t now_ns, CanBus& bus);
   void finish_transfer(const Task& task, std::int64_t now_ns, CanBus& bus);
   void finish_reading(const Task& task, std::int64_t now_ns, CanBus& bus);
+  void finish_comparing(bool same);
   void next_task();
   void record(const Task& task, std::uint32_t value);
   void command_all(std::uint8_t command, CanBus& bus);
@@ -104,6 +105,8 @@ class BringUp {
   bool reset_again_ = false;
   std::size_t task_ = 0;  ///< within the list of the state
   Transfer transfer_ = Transfer::kNone;
+  bool comparing_ = false;  ///< the task before this one was a comparison
+  bool same_ = false;       ///< what was compared last is as wanted
   std::int64_t task_started_ns_ = 0;
 };
 

@@ -72,6 +72,13 @@ std::string configuration(const ArmFault& fault, const Robot& robot) {
   const std::string object = object_name(fault);
   const unsigned index = fault.object >> 8;
   const auto setting = setting_of(fault, robot);
+  if (setting && setting->action == ObjectSetting::Action::kWriteIfOther &&
+      fault.code == tenon::canopen::kAbortReadOnly) {
+    return format(
+        "its PDO mapping %04Xh is fixed (abort 0x%08X) and another than hw/README.md lists; a "
+        "joint's depends on mode and targets_per_frame",
+        index, fault.code);
+  }
   if (const char* reason = canopen::sdo_abort_text(fault.code)) {
     std::string wanted;
     if (setting && setting->action != ObjectSetting::Action::kExpect) {

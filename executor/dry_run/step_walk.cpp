@@ -8,6 +8,7 @@
 #include "executor/joint_difference.h"
 #include "executor/joint_stop.h"
 #include "shared/base/text.h"
+#include "shared/motion/path_limits.h"
 
 namespace tenon::executor {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 constexpr double kDifference = 1e-4;
 // Two ways to one corner give the same joints, m or rad.
 constexpr double kSameCorner = 1e-3;
-// Shorter displacements (m or rad) are no motion.
-constexpr double kNoMotion = 1e-9;
 // Decoded plans carry floats: equality up to their rounding is no excess.
 constexpr double kRounding = 1.0 + 1e-6;
 
@@ -53,23 +52,14 @@ void StepWalk::find_ways() {
     for (int axis = 0; axis < 6; ++axis) {
       if ((dropped >> axis & 1U) != 0) displacement[axis] = 0.0;
     }
-    const double way_m = displacement.head<3>().norm();
-    const double turn_rad = displacement.tail<3>().norm();
-    if (way_m <= kNoMotion && turn_rad <= kNoMotion) continue;
-    const double length = way_m > kNoMotion ? way_m : turn_rad;
-    // The tighter of translation and rotation holds, as in GuardedMove.
-    const auto limit = [&](double linear, double angular) {
-      if (turn_rad <= kNoMotion) return linear;
-      const double turning = angular * length / turn_rad;
-      return way_m <= kNoMotion ? turning : std::min(linear, turning);
-    };
-    const SpeedLimits& v = set_.speeds;
+    const double length = path_length(displacement);
+    if (length <= 0.0) continue;
+    const PathLimits limits = path_limits(displacement, set_.speeds);
     Way way;
     way.along = displacement / length;
-    way.slow = limit(v.contact_mps, v.contact_radps);
-    way.fast = step_.slow_from_m > 0.0 ? std::max(way.slow, limit(v.approach_mps, v.approach_radps))
-                                       : way.slow;
-    way.acceleration = limit(v.acceleration_mps2, v.acceleration_radps2);
+    way.slow = limits.contact_speed;
+    way.fast = step_.slow_from_m > 0.0 ? std::max(way.slow, limits.approach_speed) : way.slow;
+    way.acceleration = limits.acceleration;
     ways_.push_back(way);
   }
 }

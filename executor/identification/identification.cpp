@@ -1,7 +1,6 @@
 #include "executor/identification/identification.h"
 
 #include "shared/base/error.h"
-#include "shared/base/text.h"
 
 namespace tenon::executor {
 namespace {
@@ -10,38 +9,24 @@ class PayloadIdentificationRun : public Identification {
  public:
   explicit PayloadIdentificationRun(const Cell& cell) : motion_(cell, {}) {}
   IdentificationMotion& motion() override { return motion_; }
-  [[nodiscard]] std::string report() const override { return describe(result()); }
-  [[nodiscard]] bool found() const override {
-    return result().status == PayloadIdentification::Status::kIdentified;
+  [[nodiscard]] Finding finding() const override {
+    return finding_of(identify_payload(motion_.readings()));
   }
 
  private:
-  [[nodiscard]] PayloadIdentification result() const {
-    return identify_payload(motion_.readings());
-  }
   IdentifyPayloadMotion motion_;
 };
 
 class ContactIdentificationRun : public Identification {
  public:
   ContactIdentificationRun(const Cell& cell, const IdentifyContactMotion::Parameters& parameters)
-      : parameters_(parameters), cycle_s_(1e-6 * cell.robot.cycle_us), motion_(cell, parameters) {}
+      : motion_(cell, parameters) {}
   IdentificationMotion& motion() override { return motion_; }
-  [[nodiscard]] std::string report() const override {
-    if (motion_.met()) return describe(result());
-    return format("contact: nothing was met within %g m along %c%s\n", parameters_.reach_m,
-                  parameters_.sign > 0 ? '+' : '-', axis_name(parameters_.axis));
-  }
-  [[nodiscard]] bool found() const override {
-    return motion_.met() && result().status == ContactIdentification::Status::kIdentified;
+  [[nodiscard]] Finding finding() const override {
+    return finding_of(identify_contact(motion_.samples(), motion_.cycle_s()));
   }
 
  private:
-  [[nodiscard]] ContactIdentification result() const {
-    return identify_contact(motion_.samples(), cycle_s_);
-  }
-  IdentifyContactMotion::Parameters parameters_;
-  double cycle_s_;
   IdentifyContactMotion motion_;
 };
 

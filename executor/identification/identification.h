@@ -1,10 +1,11 @@
 #pragma once
-// One identification from its option to its report: which motion, and what came of it in words.
-// tenon-exec runs the motion. Set-up code; allocates.
+// One identification from its option to its finding: which motion, and what came of it. tenon-exec
+// runs the motion. Set-up code; allocates.
 
 #include <memory>
 #include <string>
 
+#include "executor/identification/finding.h"
 #include "executor/identification/identification_motion.h"
 #include "executor/identification/identify_contact_motion.h"
 #include "executor/identification/identify_payload_motion.h"
@@ -20,10 +21,8 @@ class Identification {
   Identification& operator=(const Identification&) = delete;
 
   [[nodiscard]] virtual IdentificationMotion& motion() = 0;
-  /// Once the motion is finished and nothing ended it.
-  [[nodiscard]] virtual std::string report() const = 0;
-  /// It found what it was made for.
-  [[nodiscard]] virtual bool found() const = 0;
+  /// Once the motion has ended with kMeasured.
+  [[nodiscard]] virtual Finding finding() const = 0;
 };
 
 [[nodiscard]] std::unique_ptr<Identification> make_payload_identification(const Cell& cell);

@@ -1,91 +1,36 @@
 #pragma once
-// What the motions of an identification have in common: drives on, something slow and watched,
-// drives off. A cycle is as the controller's: feedback in, joint setpoints out, no clock, bus or
-// thread.
+// The task that moves the arm for an identification: something slow and watched where it stands. It
+// has no start to go to; a stop, and whatever a joint cannot follow, ramps the joints down. Once
+// all readings are taken it ends with kMeasured.
 //
-//   waiting -- enabled --> active -- done, stop, limit --> stopping -- at rest --> disabling -->
-//   finished
-//                            \------- fault ---> quick stopping --- at rest ------/
-//
-// Real-time but for the constructor and begin(): no allocation, no lock, no throw. One thread.
+// Real-time but for the constructor: no allocation, no lock, no throw. One thread.
 
-#include <cstdint>
-
-#include "executor/ending.h"
-#include "executor/joint_command.h"
-#include "executor/supervision.h"
-#include "executor/tool_kinematics.h"
+#include "executor/control_task.h"
 #include "shared/cell/cell.h"
-#include "shared/ports/arm.h"
 
 namespace tenon::executor {
 
-class IdentificationMotion {
+class IdentificationMotion : public ControlTask {
  public:
-  struct Command {
-    ArmRequest request = ArmRequest::kDisabled;
-    JointVector position{};
-  };
-
   /// Copies the cell. @throws InputError for a robot without joints
-  explicit IdentificationMotion(const Cell& cell);
-  IdentificationMotion(const IdentificationMotion&) = delete;
-  IdentificationMotion& operator=(const IdentificationMotion&) = delete;
-  virtual ~IdentificationMotion() = default;
-
-  [[nodiscard]] Command cycle(const ArmFeedback& feedback) noexcept;
-  /// Ends it in the next cycle.
-  void request_stop() noexcept { stop_requested_ = true; }
-
-  [[nodiscard]] bool finished() const noexcept { return state_ == State::kFinished; }
-  /// kNone where nothing went wrong.
-  [[nodiscard]] const Ending& ending() const noexcept { return ending_; }
-  [[nodiscard]] const Cell& cell() const noexcept { return cell_; }
+  explicit IdentificationMotion(const Cell& cell) : ControlTask(cell, {}) {}
 
  protected:
-  /// The drives are on and the joints rest.
+  /// The sensor is tared and the joints rest; run() comes next.
   virtual void begin() = 0;
-  /// One cycle of it. @return true: done, all at rest or nearly
-  virtual bool act(const ArmFeedback& feedback) = 0;
 
-  void end(const Ending& ending);
   /// Joints or tool that cannot be followed end it.
   template <typename Target>
   void follow(const Target& target) {
-    if (const auto refused = joints_.follow(target)) end(*refused);
+    if (const auto refused = joints().follow(target)) end(*refused);
   }
 
-  [[nodiscard]] const ToolKinematics& kinematics() const { return kinematics_; }
-  [[nodiscard]] Supervision& supervision() { return supervision_; }
-  [[nodiscard]] const Supervision& supervision() const { return supervision_; }
-  [[nodiscard]] const JointVector& commanded() const { return joints_.position(); }
-  [[nodiscard]] double cycle_s() const { return cycle_s_; }
-
  private:
-  enum class State : std::uint8_t {
-    kWaiting = 0,
-    kActive = 1,
-    kStopping = 2,
-    kQuickStopping = 3,
-    kDisabling = 4,
-    kFinished = 5,
-  };
-
-  void enter(State state);
-  void run_state(const ArmFeedback& feedback);
-  void wait_for_drives(const ArmFeedback& feedback);
-  void wait_for_power_off(const ArmFeedback& feedback);
-  [[nodiscard]] ArmRequest request() const;
-
-  Cell cell_;
-  double cycle_s_;
-  ToolKinematics kinematics_;
-  Supervision supervision_;
-  JointCommand joints_;
-  State state_ = State::kWaiting;
-  double in_state_s_ = 0.0;
-  bool stop_requested_ = false;
-  Ending ending_;
+  void on_enter(State state) final;
+  void approach() final {}
+  void ramp_down() final;
+  [[nodiscard]] Vector6 move() final;
+  void write_motion(CycleRecord& record) final;
 };
 
 }  // namespace tenon::executor

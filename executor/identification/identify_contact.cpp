@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "shared/base/text.h"
+#include "shared/cell/robot.h"
 
 namespace tenon::executor {
 namespace {
@@ -129,7 +130,7 @@ std::string describe(const ContactIdentification& c) {
              format(
                  "for the robot file (measured %.4f, at least two cycles):\n"
                  "arm: {response_lag_s: %.4f}\n",
-                 c.lag_s, std::max(c.lag_s, 2.0 * c.cycle_s));
+                 c.lag_s, std::max(c.lag_s, protocol_lag_s(c.cycle_s)));
     case ContactIdentification::Status::kTooShort:
       return format("contact: not identified, needs %d samples of the force\n",
                     static_cast<int>(kPressSamplesMin));
@@ -143,6 +144,35 @@ std::string describe(const ContactIdentification& c) {
                     kPressDelayMax_s);
   }
   return "?";
+}
+
+const char* to_string(ContactIdentification::Status status) {
+  switch (status) {
+    case ContactIdentification::Status::kIdentified:
+      return "identified";
+    case ContactIdentification::Status::kTooShort:
+      return "too_short";
+    case ContactIdentification::Status::kNoResponse:
+      return "no_response";
+    case ContactIdentification::Status::kDelayAtEdge:
+      return "delay_at_edge";
+  }
+  return "?";
+}
+
+Finding finding_of(const ContactIdentification& c) {
+  Finding finding;
+  finding.found = c.status == ContactIdentification::Status::kIdentified;
+  finding.status = to_string(c.status);
+  finding.report = describe(c);
+  if (!finding.found) return finding;
+  finding.values = {{"stiffness_Npm", {c.stiffness_Npm}},
+                    {"stiffness_deviation_Npm", {c.stiffness_deviation_Npm}},
+                    {"delay_s", {c.delay_s}},
+                    {"delay_deviation_s", {c.delay_deviation_s}},
+                    {"response_lag_s", {c.lag_s}},
+                    {"force_residual_N", {c.residual_N}}};
+  return finding;
 }
 
 }  // namespace tenon::executor

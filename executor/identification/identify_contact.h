@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "executor/identification/finding.h"
+
 namespace tenon::executor {
 
 /// One cycle of the recording, evenly spaced in time.
@@ -49,5 +51,8 @@ inline constexpr double kPressDelayMax_s = 0.15;
 /// Lines for people: values with deviations, then what robot and cell file should say, with a lag
 /// of no less than the two cycles that CANopen drives take. Or why not.
 [[nodiscard]] std::string describe(const ContactIdentification& contact);
+
+[[nodiscard]] const char* to_string(ContactIdentification::Status status);
+[[nodiscard]] Finding finding_of(const ContactIdentification& contact);
 
 }  // namespace tenon::executor

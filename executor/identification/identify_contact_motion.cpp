@@ -13,14 +13,12 @@ constexpr double kPatience = 8.0;
 }  // namespace
 
 IdentifyContactMotion::IdentifyContactMotion(const Cell& cell, const Parameters& parameters)
-    : IdentificationMotion(cell),
-      parameters_(parameters),
-      sensor_tare_(SensorTare::parameters_for(cell.robot.sensor, parameters.tare_samples)) {
+    : IdentificationMotion(cell), parameters_(parameters) {
   const double longest_s = kPatience * parameters.half_wave_s * parameters.half_waves;
   samples_.reserve(static_cast<std::size_t>(longest_s / cycle_s()) + 1);
 }
 
-void IdentifyContactMotion::begin() { first_ = kinematics().tool(commanded()); }
+void IdentifyContactMotion::begin() { first_ = kinematics().tool(joints().position()); }
 
 double IdentifyContactMotion::force_N() const {
   return -parameters_.sign * supervision().wrench()[parameters_.axis];
@@ -33,51 +31,26 @@ void IdentifyContactMotion::advance(double speed_mps) {
   follow(displaced(first_, way));
 }
 
-bool IdentifyContactMotion::act(const ArmFeedback& feedback) {
+void IdentifyContactMotion::run(const ArmFeedback& /*feedback*/) {
   switch (phase_) {
-    case Phase::kTaring:
-      tare(feedback);
-      return false;
     case Phase::kApproaching:
-      advance(parameters_.approach_mps);
-      if (supervision().wrench_usable() && force_N() > parameters_.force_low_N) {
-        met_ = true;
-        phase_ = Phase::kPressing;
-      } else if (depth_m_ > parameters_.reach_m) {
-        start_retreat();
-      }
-      return false;
+      return approach_contact();
     case Phase::kPressing:
-      press();
-      return false;
+      return press();
     case Phase::kWaving:
-      wave();
-      return false;
+      return wave();
     case Phase::kRetreating:
-      retreat_s_ += cycle_s();
-      depth_m_ = retreat_from_m_ - retreat_.at(retreat_s_).position;
-      advance(0.0);
-      return retreat_s_ >= retreat_.duration_s();
+      return retreat();
   }
-  return true;
 }
 
-void IdentifyContactMotion::tare(const ArmFeedback& feedback) {
-  if (!feedback.wrench_fresh) return;
-  switch (sensor_tare_.add(feedback.wrench)) {
-    case SensorTare::Status::kGathering:
-      return;
-    case SensorTare::Status::kDone:
-      supervision().tare(sensor_tare_.mean());
-      phase_ = Phase::kApproaching;
-      return;
-    case SensorTare::Status::kUnsteady: {
-      const int axis = sensor_tare_.worst_axis();
-      return end({.reason = EndReason::kTareUnsteady,
-                  .index = axis,
-                  .value = sensor_tare_.deviation(axis),
-                  .bound = sensor_tare_.deviation_max(axis)});
-    }
+void IdentifyContactMotion::approach_contact() {
+  advance(parameters_.approach_mps);
+  if (supervision().wrench_usable() && force_N() > parameters_.force_low_N) {
+    met_ = true;
+    phase_ = Phase::kPressing;
+  } else if (depth_m_ > parameters_.reach_m) {
+    start_retreat();
   }
 }
 
@@ -115,10 +88,21 @@ void IdentifyContactMotion::start_retreat() {
   p.fast_speed = p.slow_speed = kRetreat_mps;
   p.acceleration = 0.1;
   p.jerk = 2.0;
-  retreat_ = MotionProfile(p);
+  back_ = MotionProfile(p);
   retreat_from_m_ = depth_m_;
   retreat_s_ = 0.0;
   phase_ = Phase::kRetreating;
+}
+
+void IdentifyContactMotion::retreat() {
+  retreat_s_ += cycle_s();
+  depth_m_ = retreat_from_m_ - back_.at(retreat_s_).position;
+  advance(0.0);
+  if (retreat_s_ < back_.duration_s()) return;
+  if (met_) return end({.reason = EndReason::kMeasured});
+  end({.reason = EndReason::kNothingMet,
+       .index = parameters_.axis,
+       .value = parameters_.sign * parameters_.reach_m});
 }
 
 }  // namespace tenon::executor

@@ -5,13 +5,12 @@
 // what answers is the arm and the contact.
 //
 //   force   ............................/\../\/\/\/\/\/\..............   kForceHigh_N
-//   phase   tare   approach      first press     wave        retreat
+//   phase          approach      first press     wave        retreat
 
 #include <vector>
 
 #include "executor/identification/identification_motion.h"
 #include "executor/identification/identify_contact.h"
-#include "executor/sensor_tare.h"
 #include "shared/motion/motion_profile.h"
 
 namespace tenon::executor {
@@ -28,38 +27,36 @@ class IdentifyContactMotion : public IdentificationMotion {
     double force_high_N = 20.0;
     double half_wave_s = 0.4;
     int half_waves = 16;
-    int tare_samples = 200;
   };
 
   enum class Phase : std::uint8_t {
-    kTaring = 0,
-    kApproaching = 1,
-    kPressing = 2,
-    kWaving = 3,
-    kRetreating = 4,
+    kApproaching = 0,
+    kPressing = 1,
+    kWaving = 2,
+    kRetreating = 3,
   };
 
   IdentifyContactMotion(const Cell& cell, const Parameters& parameters);
 
   /// The recorded wave.
   [[nodiscard]] const std::vector<PressSample>& samples() const { return samples_; }
-  /// False: nothing was met within reach.
+  /// False: nothing was met within reach, and it ends with kNothingMet.
   [[nodiscard]] bool met() const { return met_; }
 
  private:
   void begin() override;
-  bool act(const ArmFeedback& feedback) override;
-  void tare(const ArmFeedback& feedback);
+  void run(const ArmFeedback& feedback) override;
+  void approach_contact();
   void press();
   void wave();
   void start_retreat();
+  void retreat();
   void advance(double speed_mps);
   /// Of the contact, positive against the way.
   [[nodiscard]] double force_N() const;
 
   Parameters parameters_;
-  SensorTare sensor_tare_;
-  Phase phase_ = Phase::kTaring;
+  Phase phase_ = Phase::kApproaching;
   bool met_ = false;
   Pose first_;
   double depth_m_ = 0.0;  ///< commanded way from first_
@@ -67,7 +64,7 @@ class IdentifyContactMotion : public IdentificationMotion {
   double wave_mps_ = 0.0;
   double direction_ = 1.0;
   int half_waves_ = 0;
-  MotionProfile retreat_;
+  MotionProfile back_;
   double retreat_from_m_ = 0.0;
   double retreat_s_ = 0.0;
   std::vector<PressSample> samples_;

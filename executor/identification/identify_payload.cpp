@@ -152,4 +152,36 @@ std::string describe(const PayloadIdentification& payload) {
   return "?";
 }
 
+const char* to_string(PayloadIdentification::Status status) {
+  switch (status) {
+    case PayloadIdentification::Status::kIdentified:
+      return "identified";
+    case PayloadIdentification::Status::kTooFewPoses:
+      return "too_few_poses";
+    case PayloadIdentification::Status::kNotTurned:
+      return "not_turned";
+    case PayloadIdentification::Status::kTurnedTooLittle:
+      return "turned_too_little";
+  }
+  return "?";
+}
+
+Finding finding_of(const PayloadIdentification& p) {
+  Finding finding;
+  finding.found = p.status == PayloadIdentification::Status::kIdentified;
+  finding.status = to_string(p.status);
+  finding.report = describe(p);
+  if (!finding.found) return finding;
+  const auto three = [](const Vector3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
+  finding.values = {{"mass_kg", {p.mass_kg}},
+                    {"mass_deviation_kg", {p.mass_deviation_kg}},
+                    {"com_m", three(p.com_m)},
+                    {"com_deviation_m", {p.com_deviation_m}},
+                    {"force_bias_N", three(p.force_bias_N)},
+                    {"torque_bias_Nm", three(p.torque_bias_Nm)},
+                    {"force_residual_N", {p.force_residual_N}},
+                    {"torque_residual_Nm", {p.torque_residual_Nm}}};
+  return finding;
+}
+
 }  // namespace tenon::executor

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "executor/identification/finding.h"
 #include "shared/cell/cell.h"
 #include "shared/math/pose.h"
 
@@ -45,8 +46,12 @@ inline constexpr double kTurnMin_rad = 0.1;
 
 [[nodiscard]] PayloadIdentification identify_payload(const std::vector<RestReading>& readings);
 
+[[nodiscard]] const char* to_string(PayloadIdentification::Status status);
+
 /// Lines for people: values with deviations and residuals, then what the cell file should say. Or
 /// what cannot be told, and why.
 [[nodiscard]] std::string describe(const PayloadIdentification& payload);
+
+[[nodiscard]] Finding finding_of(const PayloadIdentification& payload);
 
 }  // namespace tenon::executor

@@ -23,68 +23,62 @@ std::vector<std::size_t> last_turning(const Robot& robot) {
 IdentifyPayloadMotion::IdentifyPayloadMotion(const Cell& cell, const Parameters& parameters)
     : IdentificationMotion(cell),
       parameters_(parameters),
+      turning_(last_turning(cell.robot)),
       reading_(SensorTare::parameters_for(cell.robot.sensor, parameters.samples)) {
-  const std::size_t corners = std::size_t{1} << last_turning(cell.robot).size();
+  const std::size_t corners = std::size_t{1} << turning_.size();
   poses_.reserve(corners + 1);
   readings_.reserve(corners + 1);
 }
 
 // The corners of a box around the first pose, then back to it.
 void IdentifyPayloadMotion::begin() {
-  const Robot& robot = cell().robot;
-  const std::vector<std::size_t> joints = last_turning(robot);
-  for (unsigned corner = 0; corner < 1U << joints.size() && !joints.empty(); ++corner) {
-    JointVector pose = commanded();
-    for (std::size_t k = 0; k < joints.size(); ++k) {
-      const Joint& joint = robot.joints[joints[k]];
+  const JointVector first = joints().position();
+  for (unsigned corner = 0; corner < 1U << turning_.size() && !turning_.empty(); ++corner) {
+    JointVector pose = first;
+    for (std::size_t k = 0; k < turning_.size(); ++k) {
+      const std::size_t turned = turning_[k];
+      const Joint& joint = cell().robot.joints[turned];
       const double sign = (corner >> k & 1U) != 0 ? 1.0 : -1.0;
-      pose[joints[k]] = std::clamp(pose[joints[k]] + sign * parameters_.turn_rad,
-                                   joint.lower + kLimitMargin_rad, joint.upper - kLimitMargin_rad);
+      pose[turned] = std::clamp(pose[turned] + sign * parameters_.turn_rad,
+                                joint.lower + kLimitMargin_rad, joint.upper - kLimitMargin_rad);
     }
     poses_.push_back(pose);
   }
-  poses_.push_back(commanded());
+  poses_.push_back(first);
   go_on();
 }
 
 void IdentifyPayloadMotion::go_on() {
-  move_ = JointMove(commanded(), poses_[pose_], cell().robot, kinematics(), parameters_.tool);
+  move_ =
+      JointMove(joints().position(), poses_[pose_], cell().robot, kinematics(), parameters_.tool);
   since_s_ = 0.0;
   reading_ = SensorTare(SensorTare::parameters_for(cell().robot.sensor, parameters_.samples));
 }
 
-bool IdentifyPayloadMotion::act(const ArmFeedback& feedback) {
+void IdentifyPayloadMotion::run(const ArmFeedback& feedback) {
   since_s_ += cycle_s();
   follow(move_.at(since_s_));
-  if (since_s_ < move_.duration_s() + parameters_.settle_s) return false;
-  if (!measure(feedback)) return false;
-  if (++pose_ == poses_.size()) return true;
-  go_on();
-  return false;
+  if (since_s_ < move_.duration_s() + parameters_.settle_s) return;
+  if (!measure(feedback)) return;
+  if (++pose_ < poses_.size()) return go_on();
+  end({.reason = EndReason::kMeasured});
 }
 
 // True once the reading of this pose is complete.
 bool IdentifyPayloadMotion::measure(const ArmFeedback& feedback) {
-  if (!feedback.wrench_fresh) return false;
+  if (!supervision().wrench_usable()) return false;
   switch (reading_.add(feedback.wrench)) {
     case SensorTare::Status::kGathering:
       return false;
     case SensorTare::Status::kDone:
       break;
-    case SensorTare::Status::kUnsteady: {
-      const int axis = reading_.worst_axis();
-      end({.reason = EndReason::kTareUnsteady,
-           .index = axis,
-           .value = reading_.deviation(axis),
-           .bound = reading_.deviation_max(axis)});
+    case SensorTare::Status::kUnsteady:
+      end(unsteady(reading_));
       return false;
-    }
   }
   const Eigen::Quaterniond R_BS =
       kinematics().chain().flange(supervision().joints()).orientation * cell().X_FS.orientation;
   readings_.push_back({R_BS.conjugate() * Vector3(-kGravity_mps2 * cell().up_B), reading_.mean()});
-  // From the first reading on, a force that its weight does not explain ends it.
-  if (!supervision().tared()) supervision().tare(reading_.mean());
   return true;
 }
 

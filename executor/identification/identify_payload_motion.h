@@ -29,12 +29,13 @@ class IdentifyPayloadMotion : public IdentificationMotion {
 
  private:
   void begin() override;
-  bool act(const ArmFeedback& feedback) override;
+  void run(const ArmFeedback& feedback) override;
   void go_on();
-  bool measure(const ArmFeedback& feedback);
+  [[nodiscard]] bool measure(const ArmFeedback& feedback);
 
   Parameters parameters_;
-  std::vector<JointVector> poses_;  ///< the first pose last
+  std::vector<std::size_t> turning_;  ///< joints, outermost first
+  std::vector<JointVector> poses_;    ///< the first pose last
   std::vector<RestReading> readings_;
   std::size_t pose_ = 0;
   JointMove move_;

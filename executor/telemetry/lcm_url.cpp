@@ -5,9 +5,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "shared/base/error.h"
 
@@ -21,13 +23,25 @@ constexpr std::uint16_t kDefaultPort = 7667;
 struct Parts {
   std::string provider;
   std::string network;
+  std::string options;
 };
 
 std::optional<Parts> parts_of(const std::string& url) {
   const std::size_t colon = url.find("://");
   if (colon == std::string::npos) return std::nullopt;
   const std::size_t network = colon + 3;
-  return Parts{url.substr(0, colon), url.substr(network, url.find('?', network) - network)};
+  const std::size_t query = url.find('?', network);
+  return Parts{url.substr(0, colon), url.substr(network, query - network),
+               query == std::string::npos ? "" : url.substr(query + 1)};
+}
+
+template <typename Number>
+std::optional<Number> number_of(std::string_view text) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec != std::errc() || read.ptr != end) return std::nullopt;
+  return value;
 }
 
 bool is_multicast(const Parts& parts) {
@@ -46,12 +60,25 @@ std::optional<sockaddr_in> group_of(const std::string& network) {
   }
   std::uint16_t port = kDefaultPort;
   if (colon != std::string::npos && colon + 1 < network.size()) {
-    const char* const end = network.data() + network.size();
-    const auto read = std::from_chars(network.data() + colon + 1, end, port);
-    if (read.ec != std::errc() || read.ptr != end || port == 0) return std::nullopt;
+    const auto read = number_of<std::uint16_t>(std::string_view(network).substr(colon + 1));
+    if (!read || *read == 0) return std::nullopt;
+    port = *read;
   }
   group.sin_port = htons(port);
   return group;
+}
+
+// NAME=VALUE&..., of multicast. @return the first one that is none
+std::optional<std::string> bad_option(std::string_view options) {
+  while (!options.empty()) {
+    const std::string_view option = options.substr(0, options.find('&'));
+    options.remove_prefix(std::min(options.size(), option.size() + 1));
+    const std::string_view value = option.substr(std::min(option.size(), option.find('=') + 1));
+    const bool good = (option.starts_with("ttl=") && number_of<std::uint8_t>(value)) ||
+                      (option.starts_with("recv_buf_size=") && number_of<std::uint32_t>(value));
+    if (!good) return std::string(option);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -59,9 +86,14 @@ std::optional<sockaddr_in> group_of(const std::string& network) {
 void check_lcm_url(const std::string& url) {
   const std::optional<Parts> parts = parts_of(url);
   if (parts && is_multicast(*parts)) {
-    if (group_of(parts->network)) return;
-    throw InputError("--lcm-url " + url + ": '" + parts->network +
-                     "' must be a multicast group and a port, as 239.255.76.67:7667");
+    if (!group_of(parts->network)) {
+      throw InputError("--lcm-url " + url + ": '" + parts->network +
+                       "' must be a multicast group and a port, as 239.255.76.67:7667");
+    }
+    const std::optional<std::string> bad = bad_option(parts->options);
+    if (!bad) return;
+    throw InputError("--lcm-url " + url + ": '" + *bad +
+                     "' must be ttl=0..255 or recv_buf_size=BYTES");
   }
   if (parts && parts->provider == "file" && !parts->network.empty()) return;
   if (parts && parts->provider == "memq" && parts->network.empty()) return;

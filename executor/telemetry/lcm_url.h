@@ -7,7 +7,7 @@
 namespace tenon::executor {
 
 /// @throws InputError unless it is udpm:// or mpudpm:// with a multicast address and a port (either
-/// may be left out), file://PATH, or memq://
+/// may be left out) and options that LCM has, file://PATH, or memq://
 void check_lcm_url(const std::string& url);
 
 /// Whether the kernel knows a way to the multicast group of such a URL; true where it needs none.

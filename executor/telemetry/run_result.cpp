@@ -70,39 +70,77 @@ std::string displacement_text(const Vector6& displacement) {
   return all;
 }
 
-}  // namespace
+Json json_of(const Finding& finding) {
+  Json json = {{"status", finding.status}};
+  for (const auto& [name, values] : finding.values) {
+    json[name] = values.size() == 1 ? Json(values.front()) : Json(values);
+  }
+  return json;
+}
 
-RunResult gather_result(const Controller& controller, const CycleRunner& runner,
+// What a run of a plan and an identification have in common. @param plan whose names messages use
+RunResult common_result(const ControlTask& task, const Plan& plan, const CycleRunner& runner,
                         std::uint64_t records_dropped, const std::string& arm_fault_text) {
-  const Ending& ending = controller.ending();
+  const Ending& ending = task.ending();
   RunResult result;
   result.reason = ending.reason;
-  result.message = describe(ending, controller.plan(), controller.cell(), arm_fault_text);
-  result.disable_confirmed = controller.finished() && ending.disable_confirmed;
-  if (controller.finished() && !ending.disable_confirmed) {
-    result.message += "; the arm did not confirm that it is disabled";
-  }
-  result.exit_code = ending.reason == EndReason::kPlanDone && result.disable_confirmed ? 0 : 1;
-  for (std::size_t i = 0; i < controller.runner().report_count(); ++i) {
-    result.steps.push_back(controller.runner().report(i));
-  }
+  result.message = describe(ending, plan, task.cell(), arm_fault_text);
+  result.disable_confirmed = task.finished() && ending.disable_confirmed;
   result.statistics = runner.statistics();
-  result.cycle_s = controller.cycle_s();
-  result.duration_s = result.cycle_s * static_cast<double>(result.statistics.cycles);
-  result.peak_force_N = controller.peak_force_N();
-  result.peak_torque_Nm = controller.peak_torque_Nm();
   result.records_dropped = records_dropped;
+  result.cycle_s = task.cycle_s();
+  result.duration_s = result.cycle_s * static_cast<double>(result.statistics.cycles);
+  result.peak_force_N = task.peak_force_N();
+  result.peak_torque_Nm = task.peak_torque_Nm();
   return result;
 }
 
-std::string to_json(const RunResult& result, const Plan& plan, const Cell& cell) {
+// The drives have the last word.
+void conclude(RunResult& result, const ControlTask& task, bool success) {
+  if (task.finished() && !task.ending().disable_confirmed) {
+    result.message += "; the arm did not confirm that it is disabled";
+  }
+  result.exit_code = success && result.disable_confirmed ? 0 : 1;
+}
+
+}  // namespace
+
+bool RunResult::ended_badly() const {
+  const bool orderly = reason == EndReason::kMeasured || reason == EndReason::kNothingMet;
+  return exit_code != 0 && reason != EndReason::kStopRequested && !(orderly && disable_confirmed);
+}
+
+RunResult gather_result(const Controller& controller, const CycleRunner& runner,
+                        std::uint64_t records_dropped, const std::string& arm_fault_text) {
+  const Plan& plan = controller.plan();
+  RunResult result = common_result(controller, plan, runner, records_dropped, arm_fault_text);
+  result.task = plan.task_name;
+  result.start = plan.start_name;
+  for (std::size_t i = 0; i < controller.runner().report_count(); ++i) {
+    result.steps.push_back(controller.runner().report(i));
+  }
+  conclude(result, controller, result.reason == EndReason::kPlanDone);
+  return result;
+}
+
+RunResult gather_result(const ControlTask& task, const std::optional<Finding>& finding,
+                        const CycleRunner& runner, std::uint64_t records_dropped,
+                        const std::string& arm_fault_text) {
+  RunResult result = common_result(task, Plan{}, runner, records_dropped, arm_fault_text);
+  result.finding = finding;
+  if (finding) result.message = finding->report.substr(0, finding->report.find('\n'));
+  conclude(result, task, finding && finding->found);
+  return result;
+}
+
+std::string to_json(const RunResult& result, const Cell& cell) {
   Json json = {{"status", result.exit_code == 0 ? "done" : "failed"},
                {"reason", to_string(result.reason)},
                {"message", result.message},
                {"exit_code", result.exit_code},
                {"disable_confirmed", result.disable_confirmed},
-               {"task", plan.task_name},
-               {"start", plan.start_name},
+               {"task", result.task},
+               {"start", result.start},
                {"cell", cell.name},
                {"robot", cell.robot.name},
                {"duration_s", result.duration_s},
@@ -110,6 +148,7 @@ std::string to_json(const RunResult& result, const Plan& plan, const Cell& cell)
                {"peak_torque_Nm", result.peak_torque_Nm}};
   json["steps"] = Json::array();
   for (const StepReport& report : result.steps) json["steps"].push_back(json_of(report));
+  if (result.finding) json["finding"] = json_of(*result.finding);
   json["cycle"] = {{"period_s", result.cycle_s},
                    {"cycles", result.statistics.cycles},
                    {"late_cycles", result.statistics.late_cycles},

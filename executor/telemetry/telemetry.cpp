@@ -47,9 +47,9 @@ std::vector<std::shared_ptr<lcm::LCM>> open_telemetry(const std::string& url,
   return outputs;
 }
 
-Telemetry::Telemetry(std::vector<std::shared_ptr<lcm::LCM>> outputs, const Controller& controller,
-                     const Recorder& recorder)
-    : outputs_(std::move(outputs)), controller_(controller), recorder_(recorder) {}
+Telemetry::Telemetry(std::vector<std::shared_ptr<lcm::LCM>> outputs, std::size_t joint_count,
+                     const PlanRunner* steps, const Recorder& recorder)
+    : outputs_(std::move(outputs)), joint_count_(joint_count), steps_(steps), recorder_(recorder) {}
 
 template <typename Message>
 void Telemetry::publish(const char* channel, const Message& message) {
@@ -60,7 +60,8 @@ void Telemetry::publish(const char* channel, const Message& message) {
 
 void Telemetry::consume(const CycleRecord& record) {
   publish_cycle(record);
-  while (steps_published_ < record.steps_done) publish_step(record, steps_published_++);
+  while (steps_ != nullptr && steps_published_ < record.steps_done)
+    publish_step(record, steps_published_++);
 }
 
 void Telemetry::publish_cycle(const CycleRecord& record) {
@@ -81,9 +82,8 @@ void Telemetry::publish_cycle(const CycleRecord& record) {
   std::copy(record.velocity.begin(), record.velocity.end(), message.velocity);
   std::copy(record.wrench.begin(), record.wrench.end(), message.wrench);
   message.wrench_fresh = record.wrench_fresh ? 1 : 0;
-  const std::size_t joints = controller_.cell().robot.joints.size();
-  message.joint_count = static_cast<std::int8_t>(joints);
-  const auto end = static_cast<std::ptrdiff_t>(joints);
+  message.joint_count = static_cast<std::int8_t>(joint_count_);
+  const auto end = static_cast<std::ptrdiff_t>(joint_count_);
   message.joint_position.assign(record.position.begin(), record.position.begin() + end);
   message.joint_commanded.assign(record.position_commanded.begin(),
                                  record.position_commanded.begin() + end);
@@ -96,7 +96,7 @@ void Telemetry::publish_cycle(const CycleRecord& record) {
 }
 
 void Telemetry::publish_step(const CycleRecord& record, std::size_t index) {
-  const StepReport& report = controller_.runner().report(index);
+  const StepReport& report = steps_->report(index);
   const GuardedMove::Result& result = report.result;
   tenon::step_event_t message{};
   message.utime = MonotonicClock::wall_us();
@@ -125,8 +125,8 @@ void Telemetry::publish_summary(const RunResult& result, const CycleRecord& last
   message.utime = MonotonicClock::wall_us();
   message.sequence = static_cast<std::int64_t>(result.statistics.cycles);
   message.monotonic_ns = last.time_ns;
-  message.plan = controller_.plan().task_name;
-  message.start = controller_.plan().start_name;
+  message.plan = result.task;
+  message.start = result.start;
   message.end_reason = static_cast<std::int8_t>(result.reason);
   message.message = result.message;
   message.exit_code = static_cast<std::int8_t>(result.exit_code);

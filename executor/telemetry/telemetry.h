@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "executor/controller.h"
+#include "executor/plan_runner.h"
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
 
@@ -32,10 +32,10 @@ inline constexpr const char* kRunChannel = "TENON_RUN";
 
 class Telemetry : public RecordConsumer {
  public:
-  /// @param controller whose run this is, and @param recorder whose losses are told; both outlive
-  /// this
-  Telemetry(std::vector<std::shared_ptr<lcm::LCM>> outputs, const Controller& controller,
-            const Recorder& recorder);
+  /// @param steps of the plan that runs, null where none does  @param recorder whose losses are
+  /// told; both outlive this
+  Telemetry(std::vector<std::shared_ptr<lcm::LCM>> outputs, std::size_t joint_count,
+            const PlanRunner* steps, const Recorder& recorder);
 
   void consume(const CycleRecord& record) override;
   void publish_summary(const RunResult& result, const CycleRecord& last);
@@ -50,7 +50,8 @@ class Telemetry : public RecordConsumer {
   void publish(const char* channel, const Message& message);
 
   std::vector<std::shared_ptr<lcm::LCM>> outputs_;
-  const Controller& controller_;
+  std::size_t joint_count_;
+  const PlanRunner* steps_;
   const Recorder& recorder_;
   std::size_t steps_published_ = 0;
   std::uint64_t failures_ = 0;

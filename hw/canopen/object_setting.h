@@ -12,6 +12,8 @@ struct ObjectSetting {
     kExpect,         ///< read and compare
     kAwait,          ///< read and compare until it is so, for a bounded time
     kRecord,         ///< read it where it exists, whatever it holds
+    kCompare,        ///< read it and remember whether it, and those compared just before, are so
+    kWriteIfOther,   ///< as kWrite, unless all that was compared last is so already
   };
   Action action = Action::kWrite;
   std::uint16_t index = 0;

@@ -1,7 +1,8 @@
 #pragma once
 // PDO parameters as the list of settings that configures them in the order that CiA 301 (7.5.2.36)
 // asks for: COB-ID with bit 31, transmission type, sub 0 = 0, entries, sub 0 = n, COB-ID without
-// bit 31. Set-up code, allocates.
+// bit 31. The mapping is looked at before, and left alone where it is the one wanted: many a drive
+// has a fixed one. Set-up code, allocates.
 //
 //   1400h + k, 1800h + k   sub 1: u32 COB-ID, bit 31 invalid, bit 30 no RTR; sub 2: u8 type
 //   1600h + k, 1A00h + k   sub 0: u8 entries; sub 1..: u32 index << 16 | sub << 8 | bits

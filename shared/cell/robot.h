@@ -62,10 +62,14 @@ struct Robot {
   /// Joints whose targets share a frame: 1, or 2 where single ones would overload the bus. Packed
   /// targets travel without controlwords, which then have frames of their own, sent on change.
   int targets_per_frame = 1;
-  double response_lag_s = 0.0;       ///< tau_arm: setpoint to motion
+  double response_lag_s = 0.0;       ///< tau_arm: setpoint to motion, protocol_lag_s() included
   double stiffness_Npm = 1e6;        ///< of the arm at the tool, physical
   int measurement_delay_cycles = 1;  ///< n
 };
+
+/// What the protocol alone takes from a setpoint to the motion: a target is taken up with the next
+/// SYNC and reached with the one after.
+[[nodiscard]] inline double protocol_lag_s(double cycle_s) { return 2.0 * cycle_s; }
 
 /// tau = (n + 1/2) T + tau_arm: from a force to the motion that answers it.
 [[nodiscard]] inline double latency_s(const Robot& robot) {

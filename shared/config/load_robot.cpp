@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "shared/base/text.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/urdf_chain.h"
@@ -128,6 +129,18 @@ void read_bus(const Value& value, std::set<std::int64_t>& nodes, Robot& robot) {
   }
 }
 
+/// No arm answers sooner than its protocol; a file that says so promises less force than touches
+/// have.
+double read_response_lag_s(const Value& value, const Robot& robot) {
+  const double lag_s = value.number({0.0, 1.0});
+  const double least_s = protocol_lag_s(1e-6 * robot.cycle_us);
+  constexpr double kRounding = 1.0 - 1e-9;
+  if (lag_s < least_s * kRounding) {
+    value.refuse_value(format("at least %g s, the two cycles that CANopen takes", least_s));
+  }
+  return lag_s;
+}
+
 }  // namespace
 
 Robot load_robot(const std::filesystem::path& file) {
@@ -145,7 +158,7 @@ Robot load_robot(const std::filesystem::path& file) {
   read_bus(map.at("bus"), nodes, robot);
 
   const Map arm(map.at("arm"), {"response_lag_s", "stiffness_Npm", "measurement_delay_cycles"});
-  robot.response_lag_s = arm.number("response_lag_s", {0.0, 1.0});
+  robot.response_lag_s = read_response_lag_s(arm.at("response_lag_s"), robot);
   robot.stiffness_Npm = arm.number("stiffness_Npm", {1e3, 1e9});
   robot.measurement_delay_cycles =
       static_cast<int>(arm.at("measurement_delay_cycles").integer(0, 20));

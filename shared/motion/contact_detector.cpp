@@ -1,14 +1,22 @@
 #include "shared/motion/contact_detector.h"
 
 namespace tenon {
+namespace {
+
+// Noise about the on-threshold does not end a candidacy; what is no contact falls far below.
+constexpr double kStillCandidate = 0.9;  // of the on-threshold
+
+}  // namespace
 
 ContactDetector::ContactDetector(const ContactThresholds& thresholds, std::uint8_t watched_axes,
                                  ContactSignature initial)
     : thresholds_(thresholds), watched_axes_(watched_axes), signature_(initial) {}
 
-void ContactDetector::update(std::int64_t time_ns, const Vector6& wrench) {
+void ContactDetector::update(std::int64_t time_ns, const Vector6& wrench, ContactSignature kept) {
   const std::int64_t debounce_ns = std::int64_t{1000} * thresholds_.debounce_us;
+  const ContactSignature before = candidates_;
   candidates_ = {};
+  weak_ = {};
   const double force_max_N = wrench.head<3>().cwiseAbs().maxCoeff();
   const double torque_max_Nm = wrench.tail<3>().cwiseAbs().maxCoeff();
   for (int axis = 0; axis < 6; ++axis) {
@@ -23,20 +31,32 @@ void ContactDetector::update(std::int64_t time_ns, const Vector6& wrench) {
       // contact.
       const bool largest = push >= (axis < 3 ? force_max_N : torque_max_Nm);
       const bool disagrees = held ? push < off : push > on && largest;
-      if (!held && disagrees) candidates_.bits |= bit;
+      const bool was_candidate = (before.bits & bit) != 0;
+      const double candidate_above = was_candidate ? kStillCandidate * on : on;
+      if (!held && largest && push > candidate_above) candidates_.bits |= bit;
       auto& since_ns = since_ns_[static_cast<std::size_t>(2 * axis + (sign > 0 ? 0 : 1))];
       if (!disagrees) {
         pending_.bits &= static_cast<std::uint16_t>(~bit);
       } else if ((pending_.bits & bit) == 0) {
         pending_.bits |= bit;
         since_ns = time_ns;
-      } else if (time_ns - since_ns >= debounce_ns) {
+      } else if (time_ns - since_ns < debounce_ns) {
+        continue;
+      } else if (held && (kept.bits & bit) != 0) {
+        weak_.bits |= bit;
+      } else {
         signature_.bits ^= bit;
         pending_.bits &= static_cast<std::uint16_t>(~bit);
         candidates_.bits &= static_cast<std::uint16_t>(~bit);
       }
     }
   }
+}
+
+void ContactDetector::drop_weak() {
+  signature_.bits &= static_cast<std::uint16_t>(~weak_.bits);
+  pending_.bits &= static_cast<std::uint16_t>(~weak_.bits);
+  weak_ = {};
 }
 
 }  // namespace tenon

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "shared/motion/path_limits.h"
+
 namespace tenon {
 namespace {
 
@@ -18,8 +20,6 @@ constexpr int kSettlingExtraSamples = 2;
 constexpr double kBlockedSpeed_mps = 1e-3;
 constexpr double kBlockedSpeed_radps = 1e-2;
 constexpr std::int64_t kBlocked_ns = 50'000'000;
-// Shorter displacements (m or rad) are no motion.
-constexpr double kNoMotion = 1e-9;
 
 constexpr double kNanosecond_s = 1e-9;
 
@@ -48,7 +48,8 @@ GuardedMove::GuardedMove(const MoveParameters& parameters, ContactSignature sign
     : parameters_(parameters),
       detector_(parameters.thresholds, parameters.compliance.compliant_axes, signature),
       initial_(signature),
-      displacement_(parameters.displacement) {
+      displacement_(parameters.displacement),
+      free_tool_(parameters.compliance) {
   for (int axis = 0; axis < 6; ++axis) {
     const int environment = signature.sign(axis);
     if (environment * displacement_[axis] < 0.0) displacement_[axis] = 0.0;
@@ -56,10 +57,8 @@ GuardedMove::GuardedMove(const MoveParameters& parameters, ContactSignature sign
       leaving_.bits |= ContactSignature::bit(axis, environment);
     }
   }
-  const double translation_m = displacement_.head<3>().norm();
-  const double rotation_rad = displacement_.tail<3>().norm();
-  length_ =
-      translation_m > kNoMotion ? translation_m : (rotation_rad > kNoMotion ? rotation_rad : 0.0);
+  length_ = path_length(displacement_);
+  if (length_ > 0.0) along_ = displacement_ / length_;
 }
 
 Pose GuardedMove::rest_setpoint(const Pose& pose, ContactSignature signature,
@@ -72,7 +71,7 @@ GuardedMove::Output GuardedMove::update(const Input& input) {
   if (!started_) start(input);
   remember(input);
   if (input.wrench_fresh) {
-    detector_.update(input.time_ns, input.wrench);
+    detector_.update(input.time_ns, input.wrench, kept());
     peak_force_N_ = std::max(peak_force_N_, input.wrench.head<3>().norm());
   }
   switch (phase_) {
@@ -102,40 +101,23 @@ void GuardedMove::start(const Input& input) {
 }
 
 void GuardedMove::plan_path(std::int64_t time_ns, double from) {
-  const SpeedLimits& v = parameters_.speeds;
-  const double translation_m = displacement_.head<3>().norm();
-  const double rotation_rad = displacement_.tail<3>().norm();
+  const PathLimits limits = path_limits(displacement_, parameters_.speeds);
   MotionProfile::Parameters p;
   p.length = length_ - from;
   p.slow_from = std::max(0.0, parameters_.slow_from_m - from);
-  p.fast_speed = v.approach_mps;
-  p.slow_speed = v.contact_mps;
-  p.acceleration = v.acceleration_mps2;
-  p.jerk = v.jerk_mps3;
-  if (rotation_rad > kNoMotion) {
-    // Every limit in path units; the tighter of translation and rotation holds.
-    const double path_per_rad = length_ / rotation_rad;
-    const bool turn_only = translation_m <= kNoMotion;
-    const auto limit = [&](double linear, double angular) {
-      return turn_only ? angular : std::min(linear, angular * path_per_rad);
-    };
-    p.fast_speed = limit(v.approach_mps, v.approach_radps);
-    p.slow_speed = limit(v.contact_mps, v.contact_radps);
-    p.acceleration = limit(v.acceleration_mps2, v.acceleration_radps2);
-    p.jerk = limit(v.jerk_mps3, v.jerk_radps3);
-  }
+  p.fast_speed = limits.approach_speed;
+  p.slow_speed = limits.contact_speed;
+  p.acceleration = limits.acceleration;
+  p.jerk = limits.jerk;
   profile_ = MotionProfile(p);
   profile_start_ns_ = time_ns;
   profile_from_ = from;
 }
 
 double GuardedMove::path_at(const Pose& pose) const {
-  if (length_ <= 0.0) return 0.0;
   const Vector6 off = displacement_between(rest_, pose);
-  const bool turn_only = displacement_.head<3>().norm() <= kNoMotion;
-  return (turn_only ? displacement_.tail<3>().dot(off.tail<3>())
-                    : displacement_.head<3>().dot(off.head<3>())) /
-         length_;
+  const bool turn_only = displacement_.head<3>().norm() <= kNoTravel;
+  return turn_only ? along_.tail<3>().dot(off.tail<3>()) : along_.head<3>().dot(off.head<3>());
 }
 
 void GuardedMove::move(const Input& input) {
@@ -150,13 +132,17 @@ void GuardedMove::move(const Input& input) {
   }
 
   const double elapsed_s = kNanosecond_s * static_cast<double>(input.time_ns - profile_start_ns_);
-  const MotionProfile::Sample sample = profile_.at(elapsed_s);
-  path_ = profile_from_ + sample.position;
-  const Vector6 along = length_ > 0.0 ? Vector6(displacement_ / length_) : Vector6(Vector6::Zero());
+  const double path = profile_from_ + profile_.at(elapsed_s).position;
   bool limited = false;
-  setpoint_.pose = clamped(displaced(rest_, along * path_), input.pose, limited);
-  setpoint_.velocity = along * sample.velocity;
-  setpoint_.acceleration = along * sample.acceleration;
+  setpoint_.pose = clamped(displaced(rest_, along_ * path), input.pose, limited);
+  // The means since the last update, not the profile's own: a plant that takes steps of this length
+  // follows them to the pose, and not beside it by half a step of its speed.
+  if (const double step = step_s(); step > 0.0) {
+    const Vector6 velocity = along_ * ((path - path_) / step);
+    setpoint_.acceleration = (velocity - setpoint_.velocity) / step;
+    setpoint_.velocity = velocity;
+  }
+  path_ = path;
 
   if (!limited || !slower_than(kBlockedSpeed_mps, kBlockedSpeed_radps)) {
     pressed_since_ns_ = -1;
@@ -171,6 +157,7 @@ void GuardedMove::move(const Input& input) {
 
 void GuardedMove::enter_probing(const Input& input) {
   phase_ = Phase::kProbing;
+  free_tool_.reset({setpoint_.pose, setpoint_.velocity});
   // The command stops at once; along the candidate axes it presses, elsewhere it stays.
   const ContactSignature candidates = watched(detector_.candidates());
   const Pose push = pressed(input.pose, candidates, parameters_.compliance,
@@ -193,15 +180,18 @@ void GuardedMove::probe(const Input& input) {
   if (input.time_ns - first_.time_ns >= std::int64_t{1000} * parameters_.timeout_us) {
     return enter_settling(input, Outcome::kTimeout);
   }
-  if (input.wrench_fresh && watched(detector_.candidates()).bits == 0) {
-    phase_ = Phase::kMoving;
-    // Where the tool ran on while the command stood, the command goes on from there: the compliance
-    // would take D / K to close the difference. A tool that is held back keeps its spring loaded.
-    path_ = std::clamp(path_at(input.pose), path_, length_);
-    plan_path(input.time_ns, path_);
-    setpoint_.pose = displaced(rest_, length_ > 0.0 ? Vector6(displacement_ * (path_ / length_))
-                                                    : Vector6(Vector6::Zero()));
-  }
+  free_tool_.update(setpoint_, Vector6::Zero(), step_s());
+  if (input.wrench_fresh && watched(detector_.candidates()).bits == 0) resume(input);
+}
+
+// A push that did not last. The stop and the press have brought a free tool off the command, and
+// the compliance would take D / K to close that difference: so the command goes on from where the
+// tool runs out to.
+void GuardedMove::resume(const Input& input) {
+  phase_ = Phase::kMoving;
+  path_ = std::clamp(path_at(free_tool_.run_out()), path_, length_);
+  plan_path(input.time_ns, path_);
+  setpoint_.pose = displaced(rest_, along_ * path_);
 }
 
 void GuardedMove::enter_settling(const Input& input, Outcome outcome) {
@@ -226,9 +216,11 @@ void GuardedMove::settle(const Input& input) {
       settling_samples_ > kSettlingExtraSamples &&
       since_ns >= std::max(kRestWindow_ns, std::int64_t{1000} * parameters_.thresholds.debounce_us);
   const bool at_rest = slower_than(kRestSpeed_mps, kRestSpeed_radps);
-  if (!(sampled && at_rest) && since_ns < kSettlingMax_ns) return;
+  const bool sure = sampled && at_rest && detector_.weak().bits == 0;
+  if (!sure && since_ns < kSettlingMax_ns) return;
 
   phase_ = Phase::kDone;
+  detector_.drop_weak();
   setpoint_.pose = rest_setpoint(input.pose, detector_.signature(), parameters_);
   Result result;
   result.outcome = outcome_;
@@ -255,6 +247,11 @@ Pose GuardedMove::clamped(const Pose& setpoint, const Pose& pose, bool& active) 
   return active ? displaced(pose, pull) : setpoint;
 }
 
+ContactSignature GuardedMove::kept() const {
+  if (phase_ == Phase::kMoving) return {};
+  return {static_cast<std::uint16_t>(kAllContacts.bits & ~leaving_.bits)};
+}
+
 ContactSignature GuardedMove::watched(ContactSignature bits) const {
   return {static_cast<std::uint16_t>(bits.bits & parameters_.trigger_mask.bits & ~leaving_.bits)};
 }
@@ -264,10 +261,17 @@ void GuardedMove::remember(const Input& input) {
   ++remembered_;
 }
 
+double GuardedMove::step_s() const {
+  if (remembered_ < 2) return 0.0;
+  const Moment& now = memory_[(remembered_ - 1) % kMemory];
+  const Moment& before = memory_[(remembered_ - 2) % kMemory];
+  return kNanosecond_s * static_cast<double>(now.time_ns - before.time_ns);
+}
+
 bool GuardedMove::slower_than(double speed_mps, double speed_radps) const {
   const Moment& now = memory_[(remembered_ - 1) % kMemory];
-  const std::size_t kept = std::min(remembered_, kMemory);
-  for (std::size_t back = 1; back < kept; ++back) {
+  const std::size_t moments = std::min(remembered_, kMemory);
+  for (std::size_t back = 1; back < moments; ++back) {
     const Moment& then = memory_[(remembered_ - 1 - back) % kMemory];
     const std::int64_t window_ns = now.time_ns - then.time_ns;
     if (window_ns < kRestWindow_ns && back + 1 < kMemory) continue;

@@ -13,6 +13,11 @@
 //                  v
 //             kSettling -- at rest, or bounded --> kDone
 //
+// A candidate that was no contact costs nothing: the path goes on from where the stop and the press
+// have brought a tool that nothing touches. Contacts that are held already are kept while another
+// is made, since that may push the tool off them for a while; when it is at rest shows which are
+// left.
+//
 // The plant between setpoint and pose (an ODE rollout, or an admittance law in front of drives)
 // realises Compliance; the move itself never looks at the spring's own force.
 
@@ -22,10 +27,12 @@
 #include <optional>
 
 #include "shared/math/pose.h"
+#include "shared/motion/admittance.h"
 #include "shared/motion/contact_detector.h"
 #include "shared/motion/motion_profile.h"
 #include "shared/motion/move_parameters.h"
 #include "shared/motion/outcome.h"
+#include "shared/motion/setpoint.h"
 
 namespace tenon {
 
@@ -39,11 +46,7 @@ class GuardedMove {
     bool wrench_fresh = true;          ///< a new sensor sample, not the last one again
   };
 
-  struct Setpoint {
-    Pose pose;
-    Vector6 velocity = Vector6::Zero();      ///< m/s, rad/s
-    Vector6 acceleration = Vector6::Zero();  ///< m/s^2, rad/s^2
-  };
+  using Setpoint = tenon::Setpoint;
 
   struct Result {
     Outcome outcome = Outcome::kTimeout;
@@ -94,11 +97,17 @@ class GuardedMove {
   /// How far along the path a pose is, in path units; the part off the path does not count.
   [[nodiscard]] double path_at(const Pose& pose) const;
   void probe(const Input& input);
+  void resume(const Input& input);
   void settle(const Input& input);
   [[nodiscard]] Pose clamped(const Pose& setpoint, const Pose& pose, bool& active) const;
   [[nodiscard]] ContactSignature watched(ContactSignature bits) const;
+  /// While a contact is being made the tool presses on into those that it holds already; which of
+  /// them are left shows when it is at rest.
+  [[nodiscard]] ContactSignature kept() const;
   [[nodiscard]] bool slower_than(double speed_mps, double speed_radps) const;
   void remember(const Input& input);
+  /// From the update before to this one; 0 at the first.
+  [[nodiscard]] double step_s() const;
 
   MoveParameters parameters_;
   ContactDetector detector_;
@@ -107,6 +116,7 @@ class GuardedMove {
   ContactSignature leaving_;
   Vector6 displacement_ = Vector6::Zero();  ///< without what would push into a held contact
   double length_ = 0.0;                     ///< of displacement_, m (rad if it only rotates)
+  Vector6 along_ = Vector6::Zero();         ///< displacement_ over length_
 
   Phase phase_ = Phase::kMoving;
   bool started_ = false;
@@ -117,6 +127,7 @@ class GuardedMove {
   std::int64_t profile_start_ns_ = 0;
   double profile_from_ = 0.0;  ///< path already behind the profile's start
   double path_ = 0.0;          ///< path covered by the command
+  Admittance free_tool_;       ///< while probing: the tool if nothing touches it
   std::int64_t pressed_since_ns_ = -1;
   std::int64_t settling_since_ns_ = 0;
   int settling_samples_ = 0;

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "executor/identification/identification_runner.h"
+#include "executor/cycle_runner.h"
 #include "executor/identification/identify_contact_motion.h"
 #include "executor/identification/identify_payload_motion.h"
 #include "hw/canopen_arm.h"
@@ -30,23 +30,25 @@ namespace {
 constexpr std::int64_t kCyclesMax = 200'000;
 constexpr double kRelaxation_s = 2e-3;
 
+using executor::EndReason;
+
 // Runs a motion to its end. @param arm_cell what the virtual arm really is
 void run_motion(executor::IdentificationMotion& motion, const Cell& arm_cell, const Task& task,
-                std::uint64_t seed) {
+                std::uint64_t seed, EndReason expected = EndReason::kMeasured) {
   const Robot& robot = arm_cell.robot;
   sim::VirtualLink link({.bitrate_bps = robot.bitrate_bps}, robot.master_node);
   hw::CanopenArm arm(robot, link.master());
   sim::VirtualCell::Options world;
   world.seed = seed;
   sim::VirtualCell virtual_cell(arm_cell, task, world);
-  executor::IdentificationRunner runner(arm, motion);
+  executor::CycleRunner runner(arm, motion, nullptr, {});
   sim::Lockstep time(arm, virtual_cell, link, {.cycle_ns = std::int64_t{1000} * robot.cycle_us});
   ASSERT_TRUE(time.prepare());
   std::int64_t cycles = 0;
   while (time.cycle(runner) && ++cycles < kCyclesMax) {
   }
   EXPECT_LT(cycles, kCyclesMax);
-  EXPECT_EQ(motion.ending().reason, executor::EndReason::kNone)
+  EXPECT_EQ(motion.ending().reason, expected)
       << executor::describe(motion.ending(), Plan{}, arm_cell);
   EXPECT_TRUE(motion.ending().disable_confirmed);
 }
@@ -120,7 +122,9 @@ TEST(ContactIdentification, WhereNothingStandsItGoesBackAndSaysSo) {
   Task task = wall_task();
   task.environment.front().pose.position_m.x() += 0.2;
   executor::IdentifyContactMotion motion(gantry_cell(), {});
-  run_motion(motion, gantry_cell(), task, 1);
+  run_motion(motion, gantry_cell(), task, 1, EndReason::kNothingMet);
+  EXPECT_EQ(executor::describe(motion.ending(), Plan{}, gantry_cell()),
+            "nothing was met within 0.05 m along +x");
   EXPECT_FALSE(motion.met());
   EXPECT_TRUE(motion.samples().empty());
 }
@@ -172,7 +176,7 @@ TEST_P(SixAxisIdentification, ThePayloadIsFoundWithinAPercentAndAMillimetre) {
               1e3 * (found.com_m - cell.payload_com_m).norm(), found.force_residual_N);
 }
 
-// Rests in many poses; tared in the first one.
+// Rests in many poses around the one in which it was tared.
 class PoseTour : public executor::IdentificationMotion {
  public:
   static constexpr int kPoses = 100;
@@ -187,12 +191,13 @@ class PoseTour : public executor::IdentificationMotion {
   static constexpr double kSpread_rad = 0.4;
 
   void begin() override {
-    first_ = commanded();
+    first_ = joints().position();
+    upright_ = supervision().tool().orientation;
     go_on();
   }
   void go_on() {
     JointVector next = first_;
-    for (std::size_t i = 0; i < cell().robot.joints.size() && poses > 0; ++i) {
+    for (std::size_t i = 0; i < cell().robot.joints.size(); ++i) {
       const Joint& joint = cell().robot.joints[i];
       const double share = static_cast<double>(random_() >> 11) * 0x1.0p-53;
       next[i] = std::clamp(first_[i] + kSpread_rad * (2.0 * share - 1.0), joint.lower + 0.1,
@@ -201,28 +206,22 @@ class PoseTour : public executor::IdentificationMotion {
     SpeedLimits quick;
     quick.contact_mps = 1.0;
     quick.contact_radps = 2.0;
-    move_ = executor::JointMove(commanded(), next, cell().robot, kinematics(), quick);
+    move_ = executor::JointMove(joints().position(), next, cell().robot, kinematics(), quick);
     since_s_ = 0.0;
     samples_ = 0;
     sum_.setZero();
   }
-  bool act(const ArmFeedback& feedback) override {
+  void run(const ArmFeedback& /*feedback*/) override {
     since_s_ += cycle_s();
     follow(move_.at(since_s_));
-    if (since_s_ < move_.duration_s() + kSettle_s || !feedback.wrench_fresh) return false;
-    sum_ += poses == 0 ? feedback.wrench : supervision().wrench();
-    if (++samples_ < kSamples) return false;
-    if (poses == 0) {
-      supervision().tare(sum_ / kSamples);
-      upright_ = supervision().tool().orientation;
-    } else {
-      worst_N = std::max(worst_N, (sum_ / kSamples).head<3>().norm());
-      turn_max_rad =
-          std::max(turn_max_rad, upright_.angularDistance(supervision().tool().orientation));
-    }
-    if (++poses > kPoses) return true;
+    if (since_s_ < move_.duration_s() + kSettle_s || !supervision().wrench_usable()) return;
+    sum_ += supervision().wrench();
+    if (++samples_ < kSamples) return;
+    worst_N = std::max(worst_N, (sum_ / kSamples).head<3>().norm());
+    turn_max_rad =
+        std::max(turn_max_rad, upright_.angularDistance(supervision().tool().orientation));
+    if (++poses == kPoses) return end({.reason = EndReason::kMeasured});
     go_on();
-    return false;
   }
 
   JointVector first_{};
@@ -238,7 +237,7 @@ TEST_P(SixAxisIdentification, AKnownPayloadLeavesLessThanThreeTenthsOfANewtonInA
   const Cell cell = six_axis_cell(GetParam());
   PoseTour tour(cell);
   run_motion(tour, cell, air_task(), 1);
-  EXPECT_EQ(tour.poses, PoseTour::kPoses + 1);
+  EXPECT_EQ(tour.poses, PoseTour::kPoses);
   EXPECT_GT(tour.turn_max_rad, 0.5);
   EXPECT_LT(tour.worst_N, 0.3);
   std::printf("%s: at most %.3f N of %.1f N weight, turned by up to %.2f rad\n", GetParam(),

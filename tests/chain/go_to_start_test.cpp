@@ -1,9 +1,14 @@
-// The arm stands where another start of the task is, and the plan begins elsewhere.
+// The arm stands elsewhere than where the plan begins.
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <string>
 
+#include "executor/dry_run/dry_run.h"
+#include "executor/tool_kinematics.h"
 #include "shared/config/load.h"
 #include "tests/chain/planned.h"
 #include "tests/support/lockstep.h"
@@ -49,6 +54,81 @@ TEST(GoToStart, ASixAxisArmThatTouchesTheTableOnItsWayStopsSoftlyAndSaysSo) {
   EXPECT_LT(result.truth.contact_force_N_max, cell.force_fault_N);
   for (const auto& drive : result.truth.drives) EXPECT_TRUE(drive.brake_engaged) << drive.joint;
 }
+
+// --- from joint positions away from the start
+// -----------------------------------------------------
+
+class SixAxisGoToStart : public ::testing::TestWithParam<const char*> {
+ protected:
+  // 0.12 m above the start, 0.16 m beside it and turned: every joint stands elsewhere.
+  [[nodiscard]] JointVector away() const {
+    const JointVector start = executor::dry_run(planned.plan, cell).start.value();
+    const Vector6 off{{0.15, 0.05, 0.12, 0.10, -0.10, 0.20}};
+    const executor::ToolKinematics kinematics(cell);
+    const auto found = kinematics.joints(displaced(planned.plan.start, off), start);
+    EXPECT_EQ(found.status, SerialChain::InverseStatus::kSolved);
+    for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
+      EXPECT_GT(std::abs(found.position[i] - start[i]), 0.01) << cell.robot.joints[i].name;
+    }
+    return found.position;
+  }
+
+  [[nodiscard]] Lockstep::Options from_away() const {
+    Lockstep::Options options;
+    options.start = "1";
+    options.joints = away();
+    options.controller.go_to_start = true;
+    return options;
+  }
+
+  static void expect_brakes(const sim::Truth& truth) {
+    for (const auto& drive : truth.drives) EXPECT_TRUE(drive.brake_engaged) << drive.joint;
+    EXPECT_EQ(truth.faults, 0U);
+  }
+
+  Cell cell = load_cell(std::filesystem::path(TENON_SOURCE_DIR) / "hw/cells" /
+                        (std::string(GetParam()) + ".yaml"));
+  const Planned planned = plan_box(cell, "1");
+};
+
+TEST_P(SixAxisGoToStart, TheToolComesToTheNominalStartAndThePlanToItsGoal) {
+  Lockstep chain(cell, planned.task, planned.plan, from_away());
+  ASSERT_TRUE(chain.prepare());
+  while (chain.controller().state() < executor::State::kRunning) ASSERT_TRUE(chain.cycle());
+  const Vector6 off = displacement_between(planned.plan.start, chain.cell().truth().tool);
+  EXPECT_LT(off.head<3>().norm(), 1e-3);
+  EXPECT_LT(off.tail<3>().norm(), 3e-3);
+  std::printf("%s: at the start within %.2f mm and %.2f mrad after %.1f s\n", GetParam(),
+              1e3 * off.head<3>().norm(), 1e3 * off.tail<3>().norm(),
+              1e-9 * static_cast<double>(chain.now_ns()));
+  while (chain.cycle()) {
+  }
+  const auto result = chain.result();
+  EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
+  EXPECT_LT(result.truth.error_norm_m, planned.task.goal_tolerance_m);
+  expect_brakes(result.truth);
+}
+
+// A post that reaches as high as the arm stands, between it and the start.
+TEST_P(SixAxisGoToStart, APostInTheWayStopsItSoftlyAndByName) {
+  Task task = planned.task;
+  Shape post{"post", Shape::Kind::kBox, {0.05, 0.30, 0.20}, {}};
+  post.pose.position_m = {-0.27, -0.15, 0.10};
+  task.environment.push_back(post);
+  const auto result = Lockstep(cell, task, planned.plan, from_away()).run();
+  EXPECT_EQ(result.ending.reason, EndReason::kContactOnApproach) << result.reason;
+  EXPECT_EQ(result.reason.rfind("touched something on the way to the start: ", 0), 0U)
+      << result.reason;
+  EXPECT_EQ(result.steps, 0U);
+  EXPECT_GT(result.truth.contact_force_N_max, 0.0);
+  EXPECT_LT(result.truth.contact_force_N_max, cell.force_fault_N);
+  expect_brakes(result.truth);
+  std::printf("%s: %s, at most %.1f N\n", GetParam(), result.reason.c_str(),
+              result.truth.contact_force_N_max);
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, SixAxisGoToStart, ::testing::Values("csp6", "lwa4p"),
+                         [](const auto& arm) { return std::string(arm.param); });
 
 }  // namespace
 }  // namespace tenon::tests

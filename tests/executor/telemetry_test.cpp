@@ -26,7 +26,7 @@ RunResult published_run(std::vector<std::shared_ptr<lcm::LCM>> outputs) {
   const auto recorder = std::make_unique<Recorder>();
   Bench bench(touch_and_slide_plan(), {}, hand_made_cell(), Vector3::Zero(), recorder.get());
   bench.arm.walls.push_back({0, +1, 0.13});
-  Telemetry telemetry(std::move(outputs), bench.controller, *recorder);
+  Telemetry telemetry(std::move(outputs), 3, &bench.controller.runner(), *recorder);
   recorder->add(telemetry);
   bench.run([&] { recorder->drain(); });
   recorder->drain();
@@ -118,14 +118,17 @@ TEST(Telemetry, ALogThatCannotBeWrittenIsBadInput) {
 }
 
 TEST(LcmUrl, ASlipOfThePenIsNoMissingRoute) {
-  for (const char* good : {"udpm://239.255.76.67:7667?ttl=0", "udpm://", "udpm://:7000", "memq://",
-                           "udpm://239.1.2.3", "file://run.lcmlog?mode=w"}) {
+  for (const char* good :
+       {"udpm://239.255.76.67:7667?ttl=0", "udpm://", "udpm://:7000", "memq://", "udpm://239.1.2.3",
+        "udpm://?recv_buf_size=65536&ttl=1", "file://run.lcmlog?mode=w"}) {
     EXPECT_NO_THROW(check_lcm_url(good)) << good;
   }
   for (const char* bad :
        {"", "upd://239.255.76.67:7667", "udpm:239.255.76.67:7667", "239.255.76.67",
         "udpm://10.0.0.1:7667", "udpm://239.255.76.67:0", "udpm://239.255.76.67:7x",
-        "udpm://239.255.76:7667", "file://", "memq://x", "udpm://host:7667"}) {
+        "udpm://239.255.76:7667", "file://", "memq://x", "udpm://host:7667",
+        "udpm://239.255.76.67:7667?tll=0", "udpm://239.255.76.67:7667?ttl=256",
+        "udpm://239.255.76.67:7667?ttl=", "udpm://239.255.76.67:7667?ttl=0&x"}) {
     EXPECT_THROW(check_lcm_url(bad), InputError) << bad;
     std::vector<std::string> warnings;
     EXPECT_THROW((void)open_telemetry(bad, "", warnings), InputError) << bad;
@@ -137,8 +140,7 @@ TEST(RunResult, TheJsonTellsStepsReasonAndCycle) {
   bench.arm.walls.push_back({0, +1, 0.13});
   bench.run();
   const RunResult result = gather_result(bench.controller, bench.runner, 7, "");
-  const auto json =
-      nlohmann::json::parse(to_json(result, bench.controller.plan(), bench.controller.cell()));
+  const auto json = nlohmann::json::parse(to_json(result, bench.controller.cell()));
   EXPECT_EQ(json.at("status"), "done");
   EXPECT_EQ(json.at("reason"), "plan_done");
   EXPECT_EQ(json.at("exit_code"), 0);

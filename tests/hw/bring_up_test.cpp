@@ -114,6 +114,41 @@ TEST(BringUp, RefusedObjectIsNamedWithItsAbort) {
             "device's manual and firmware");
 }
 
+// As an LWA 4P has them: mapped for interpolated position, and nobody can change that.
+void fix_mapping(ScriptedNode& node, std::uint32_t target) {
+  node.default_mapping = {{0x160000, 2},         {0x160001, 0x60400010}, {0x160002, target},
+                          {0x1A0000, 3},         {0x1A0001, 0x60410010}, {0x1A0002, 0x60770010},
+                          {0x1A0003, 0x60640020}};
+  for (const auto& [object, value] : node.default_mapping) node.read_only.insert(object);
+}
+
+TEST(BringUp, AFixedMappingThatIsTheOneWantedIsTakenAsItIs) {
+  Robot robot = gantry_robot();
+  robot.joints[0].mode = Joint::Mode::kInterpolatedPosition;
+  GantryOnBus gantry(robot);
+  gantry.nodes[0]->keeps[0x650200] = 0x43;
+  fix_mapping(*gantry.nodes[0], 0x60C10120);
+  ASSERT_TRUE(gantry.prepare_and_enable()) << describe(gantry.arm.fault(), gantry.robot);
+  std::vector<std::uint32_t> pdos;
+  for (const auto& write : gantry.nodes[0]->writes) {
+    if (write.object >> 8 >= 0x1400 && write.object >> 8 < 0x1C00) pdos.push_back(write.object);
+  }
+  EXPECT_EQ(pdos, (std::vector<std::uint32_t>{0x140001, 0x140002, 0x140001, 0x180001, 0x180002,
+                                              0x180001, 0x180101}));
+  JointVector target = gantry.feedback.position;
+  target[0] += 0.001;
+  for (int i = 0; i < 3; ++i) gantry.cycle(ArmRequest::kEnabled, target);
+  EXPECT_EQ(gantry.nodes[0]->target_counts, 1000);
+}
+
+TEST(BringUp, AFixedMappingThatIsAnotherIsNamed) {
+  GantryOnBus gantry;
+  fix_mapping(*gantry.nodes[0], 0x60C10120);  // where mode 8 needs 607Ah
+  EXPECT_EQ(failure(gantry),
+            "node 1 (x): its PDO mapping 1600h is fixed (abort 0x06010002) and another than "
+            "hw/README.md lists; a joint's depends on mode and targets_per_frame");
+}
+
 TEST(BringUp, ValueThatIsNotKeptIsNoticedOnReadBack) {
   GantryOnBus gantry;
   gantry.nodes[1]->keeps[0x606500] = 0;

@@ -205,20 +205,36 @@ TEST(SdoClient, UploadThatNeverEndsIsAborted) {
   EXPECT_EQ(client.abort_code(), 0x05040005u);
 }
 
-TEST(PdoConfiguration, SwitchesOffMapsAndSwitchesOnInThisOrder) {
+TEST(PdoConfiguration, LooksSwitchesOffMapsAndSwitchesOnInThisOrder) {
+  using Action = ObjectSetting::Action;
   std::vector<ObjectSetting> settings;
   append_pdo(settings, {PdoConfiguration::Direction::kTransmit,
                         1,
                         0x190,
                         kEverySync,
                         {{0x6041, 0, 16}, {0x6064, 0, 32}, {0x6077, 0, 16}}});
-  const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{
-      {0x180001, 0xC0000190}, {0x180002, 1},          {0x1A0000, 0}, {0x1A0001, 0x60410010},
-      {0x1A0002, 0x60640020}, {0x1A0003, 0x60770010}, {0x1A0000, 3}, {0x180001, 0x40000190}};
+  struct Expected {
+    Action action;
+    std::uint32_t object;
+    std::uint32_t value;
+  };
+  const std::vector<Expected> expected{{Action::kCompare, 0x1A0000, 3},
+                                       {Action::kCompare, 0x1A0001, 0x60410010},
+                                       {Action::kCompare, 0x1A0002, 0x60640020},
+                                       {Action::kCompare, 0x1A0003, 0x60770010},
+                                       {Action::kWrite, 0x180001, 0xC0000190},
+                                       {Action::kWrite, 0x180002, 1},
+                                       {Action::kWriteIfOther, 0x1A0000, 0},
+                                       {Action::kWriteIfOther, 0x1A0001, 0x60410010},
+                                       {Action::kWriteIfOther, 0x1A0002, 0x60640020},
+                                       {Action::kWriteIfOther, 0x1A0003, 0x60770010},
+                                       {Action::kWriteIfOther, 0x1A0000, 3},
+                                       {Action::kWrite, 0x180001, 0x40000190}};
   ASSERT_EQ(settings.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_EQ(settings[i].object(), expected[i].first) << i;
-    EXPECT_EQ(settings[i].value, expected[i].second) << i;
+    EXPECT_EQ(settings[i].action, expected[i].action) << i;
+    EXPECT_EQ(settings[i].object(), expected[i].object) << i;
+    EXPECT_EQ(settings[i].value, expected[i].value) << i;
   }
 }
 

@@ -53,6 +53,7 @@ void ScriptedNode::reset_communication() {
   objects[0x606600] = {2, 0};
   objects[0x60C201] = objects[0x60C202] = objects[0x606000] = objects[0x606100] = {1, 0};
   objects[0x650200] = {4, 0x80};
+  for (const auto& [object, value] : default_mapping) objects[object].value = value;
 }
 
 void ScriptedNode::reboot() {
@@ -119,6 +120,9 @@ void ScriptedNode::on_sdo(const CanFrame& frame) {
     const auto kept = keeps.find(object);
     return answer(static_cast<std::uint8_t>(0x43 | unused), frame,
                   kept != keeps.end() ? kept->second : found->second.value);
+  }
+  if (read_only.contains(object)) {
+    return answer(0x80, frame, 0x06010002);
   }
   if (frame.data[0] != (0x23 | unused)) {
     return answer(0x80, frame, 0x06070010);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "shared/ports/can_bus.h"
@@ -59,7 +60,9 @@ class ScriptedNode {
   std::uint8_t tpdo_bytes = 8;
   std::map<std::uint32_t, std::uint32_t> refuses;  ///< object to abort code
   std::map<std::uint32_t, std::uint32_t> keeps;    ///< object to the value that reading gives
-  std::optional<std::uint32_t> mute_at;            ///< object whose SDO is not answered
+  std::set<std::uint32_t> read_only;
+  std::map<std::uint32_t, std::uint32_t> default_mapping;  ///< of PDOs, from the next reset on
+  std::optional<std::uint32_t> mute_at;                    ///< object whose SDO is not answered
 
  private:
   void on_nmt(const CanFrame& frame);

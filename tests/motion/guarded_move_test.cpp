@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::int64_t kStep_ns = 2'000'000;
 
-// D x' = D xs' + K (xs - x) + f with f from walls at +x and -x; the other axes are free.
+// D x' = D xs' + K (xs - x) + f with f from walls at +x and -x; the other axes are free. Between
+// two setpoints it interpolates, as drives do.
 class FormulaWorld {
  public:
   double wall_plus_x_m = 1e9;
@@ -37,8 +38,9 @@ class FormulaWorld {
     const double dt_s = 1e-9 * kStep_ns / kSubsteps;
     for (int i = 0; i < kSubsteps; ++i) {
       Vector3 force(force_N(), 0.0, 0.0);
-      const Vector3 spring =
-          compliance.stiffness_Npm * (setpoint.pose.position_m - pose.position_m) + force;
+      const double ahead_s = dt_s * (kSubsteps - i);
+      const Vector3 now_m = setpoint.pose.position_m - ahead_s * setpoint.velocity.head<3>();
+      const Vector3 spring = compliance.stiffness_Npm * (now_m - pose.position_m) + force;
       pose.position_m += dt_s * (setpoint.velocity.head<3>() + spring / compliance.damping_Nspm);
     }
   }

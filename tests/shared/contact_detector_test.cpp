@@ -68,6 +68,23 @@ TEST(ContactDetector, OneSampleBelowStartsTheDebounceAgain) {
   EXPECT_EQ(line.after({7.0}), kPlusX);
 }
 
+//   ms         0   2   4   6   8  10
+//   N          5.8 7  5.8  5  5.8  7
+//   candidate  .  yes yes  .   .  yes
+TEST(ContactDetector, NoiseAboutTheThresholdDoesNotEndACandidacy) {
+  Line line;
+  line.after({5.8});
+  EXPECT_EQ(line.detector().candidates(), kNone);
+  line.after({7.0, 5.8});
+  EXPECT_EQ(line.detector().candidates(), kPlusX);
+  line.after({5.0});
+  EXPECT_EQ(line.detector().candidates(), kNone);
+  line.after({5.8});
+  EXPECT_EQ(line.detector().candidates(), kNone);
+  line.after({7.0});
+  EXPECT_EQ(line.detector().candidates(), kPlusX);
+}
+
 //   ms      0   2   4   6   8  10  12  14  16  18  20  22
 //   N       7   7   7   7   3 1.6 1.4 1.4 1.6 1.4 1.4 1.4 1.4
 //   below   .   .   .   .   .   . |<--->  .  |<--- 6 ms -->|

@@ -129,7 +129,7 @@ TEST(TaskVariant, RefusesEachBadLineWithItsPlace) {
     const char* by;
     const char* variant;
     const char* message;
-  } kLines[] = {
+  } lines[] = {
       {"w1: 3", "w1: 3", "#coarse", ":17: variants: has no 'coarse', there are: fine, tight"},
       {"w1: 3", "w1: 3", "#", ":17: variants: has no '', there are: fine, tight"},
       {"variants:", "search:", "#fine", ":1: has no variant 'fine', nor any other"},
@@ -163,7 +163,7 @@ TEST(TaskVariant, RefusesEachBadLineWithItsPlace) {
        "'peg/variant_whose_name_is_so_long_that_no_plan_file_could_hold_it', longer than 63 "
        "characters"},
   };
-  for (const auto& line : kLines) {
+  for (const auto& line : lines) {
     EXPECT_EQ(refused(folder, line.what, line.by, line.variant), line.message) << line.by;
   }
 }

@@ -266,13 +266,13 @@ TEST(Csp6, ReachesItsPartOfTheTableInOnePosture) {
     };
     constexpr JointVector kMiddle{0.0253, -0.8045, 2.5520, 0.0245, -1.5238, 0.0054};
     SerialChain::InverseParameters parameters;
-    parameters.limit_margin = 0.16;
+    parameters.limit_margin = 0.08;
     double fastest_radps = 0.0;
     for (int row = 0; row <= 22; ++row) {
       for (const double side : {-1.0, 1.0}) {
         JointVector q = kMiddle;
         for (int column = 0; column <= 28; ++column) {
-          const double x_m = -0.01 + side * 0.55 * column / 28.0;
+          const double x_m = -0.04 + side * 0.55 * column / 28.0;
           const SerialChain::Inverse found =
               chain.inverse(flange(x_m, -0.47 + 0.02 * row), q, parameters);
           ASSERT_EQ(found.status, Status::kSolved) << name << " " << x_m << " " << row;

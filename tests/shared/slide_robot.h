@@ -12,7 +12,7 @@ namespace tenon::test {
 inline constexpr const char* kSlideRobot = R"(name: slide
 urdf: slide.urdf
 bus: {bitrate_bps: 500000, cycle_us: 4000, heartbeat_ms: 100, heartbeat_timeout_ms: 300, master_node: 127}
-arm: {response_lag_s: 0.004, stiffness_Npm: 1e6, measurement_delay_cycles: 1}
+arm: {response_lag_s: 0.008, stiffness_Npm: 1e6, measurement_delay_cycles: 1}
 joints:
   - name: turn
     node: 2

@@ -18,7 +18,7 @@ sim::VirtualCell::Options world_of(const Lockstep::Options& options) {
   world.offset = options.offset;
   world.faults = options.faults;
   world.world = options.world;
-  world.faults = options.faults;
+  world.joints = options.joints;
   return world;
 }
 

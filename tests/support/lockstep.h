@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ class Lockstep {
     double bit_error_rate = 0.0;
     std::vector<sim::Fault> faults;  ///< of the bus and of devices
     sim::WorldDraw world;
-    sim::Link* link = nullptr;  ///< in place of the virtual bus; must outlive the run
+    std::optional<JointVector> joints;  ///< where the arm stands; unset: at the start
+    sim::Link* link = nullptr;          ///< in place of the virtual bus; must outlive the run
   };
   struct Result {
     executor::Ending ending;
