@@ -1,9 +1,13 @@
 #include "planner/attractors.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include "planner/normal_draws.h"
 
 namespace tenon::planner {
 namespace {
@@ -12,6 +16,27 @@ namespace {
 constexpr std::size_t kMaxGuides = 2;
 // How far beyond w2 times the anchor a guide may begin: not at all.
 constexpr double kWithinAnchor = 0.98;
+// A sample that collides is drawn again, this often.
+constexpr int kAttempts = 20;
+// Every order of contacts is tried, so there are not to be too many.
+constexpr std::size_t kMaxContactsAnAxis = 8;
+constexpr std::uint64_t kSampleSeed = 1;
+
+bool searched(const Task& task, int axis) { return (task.coordinates >> axis & 1U) != 0; }
+
+/// Corners of a box, along the task's axes, around everything that can be touched.
+Eigen::AlignedBox3d around(const std::vector<Shape>& shapes) {
+  Eigen::AlignedBox3d box;
+  for (const Shape& shape : shapes) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3 sign((corner & 1) != 0 ? 0.5 : -0.5, (corner & 2) != 0 ? 0.5 : -0.5,
+                         (corner & 4) != 0 ? 0.5 : -0.5);
+      box.extend(shape.pose.position_m +
+                 shape.pose.orientation * shape.size_m.cwiseProduct(sign).eval());
+    }
+  }
+  return box;
+}
 
 class GuideSearch {
  public:
@@ -35,25 +60,49 @@ class GuideSearch {
       const bool together = end.spread[axis] < task_.attractor_ratio * from.spread[axis];
       if (!together || end.uncertainty_m2 >= from.uncertainty_m2) continue;
       std::vector<ContactAttractor> contacts = before;
-      contacts.push_back({axis, end.mean, end.spread[axis], end.uncertainty_m2});
+      contacts.push_back({axis, end.mean, end.spread[axis], end.uncertainty_m2, std::nullopt});
       keep(contacts);
       if (end.uncertainty_m2 > task_.goal_uncertainty_m2) push_from(*ends[i], contacts);
     }
   }
 
-  /// The start's spread about the goal; empty where the part would not fit there.
-  [[nodiscard]] Belief spread_about_goal(Rollout& rollout) const {
+  /// Whether the guides found so far lead to the goal's certainty.
+  [[nodiscard]] bool certain() const {
+    return std::any_of(found_.begin(), found_.end(), [this](const Guide& guide) {
+      return guide.contacts.back().uncertainty_m2 <= task_.goal_uncertainty_m2;
+    });
+  }
+
+  /// The start's spread about another place; empty where the part would not fit there.
+  [[nodiscard]] Belief spread_about(const Pose& place, Rollout& rollout) const {
     Belief belief;
     for (Particle particle : start_.particles) {
-      particle.pose = displaced(task_.goal, displacement_between(seed_.mean, particle.pose));
+      particle.pose = displaced(place, displacement_between(seed_.mean, particle.pose));
       if (rollout.in_collision(particle.pose)) return {};
       belief.particles.push_back(particle);
     }
     return belief;
   }
 
-  /// The nearest place where a certain tool that is drawn out of the goal along a contact loses it.
-  /// The tool first presses against each side of the goal.
+  /// Pushes from drawn places with the start's spread, then guides that go from one of the contacts
+  /// to the next: for parts that a push from the start does not meet.
+  void sample(Rollout& rollout) {
+    std::array<std::vector<ContactAttractor>, 6> known;
+    for (const Guide& guide : found_) {
+      const ContactAttractor& contact = guide.contacts.front();
+      auto& of_axis = known[static_cast<std::size_t>(contact.axis)];
+      if (!is_known(contact, of_axis)) of_axis.push_back(contact);
+    }
+    NormalDraws random(kSampleSeed);
+    for (std::size_t i = 0; i < task_.attractor_samples; ++i) {
+      const Belief belief = drawn(random, rollout);
+      if (!belief.particles.empty()) push_once(belief, known);
+    }
+    combine(known, seed_.uncertainty_m2, {});
+  }
+
+  /// Outside of the nearest place where a certain tool that is drawn straight out of the goal along
+  /// a contact loses it. The tool first presses against each side of the goal.
   [[nodiscard]] std::optional<Pose> mouth() {
     Particle certain = start_.particles.front();
     certain.pose = task_.goal;
@@ -66,10 +115,14 @@ class GuideSearch {
       for (std::size_t i = 0; i < ends.size(); ++i) {
         if (!ends[i] || pushes_along(primitives_[i], before)) continue;
         const Particle& end = ends[i]->particles.front();
-        const double away_m = distance(end.pose, task_.goal, metric_of(task_));
-        if (end.signature.count() >= before.count() || away_m >= nearest_m) continue;
-        nearest = end.pose;
-        nearest_m = away_m;
+        if (end.signature.count() >= before.count()) continue;
+        const int axis = axis_of(primitives_[i]);
+        Vector6 out = Vector6::Zero();
+        out[axis] = displacement_between(task_.goal, end.pose)[axis];
+        out[axis] += std::copysign(task_.goal_tolerance_m, out[axis]);
+        if (std::abs(out[axis]) >= nearest_m) continue;
+        nearest = displaced(task_.goal, out);
+        nearest_m = std::abs(out[axis]);
       }
     }
     return nearest;
@@ -109,7 +162,8 @@ class GuideSearch {
   void keep(const std::vector<ContactAttractor>& contacts) {
     const auto same_face = [this](const ContactAttractor& a, const ContactAttractor& b) {
       const double apart = std::abs(displacement_between(a.mean, b.mean)[a.axis]);
-      return a.axis == b.axis && apart < 0.5 * (a.axis < 3 ? task_.step_m : task_.step_rad);
+      return a.axis == b.axis && apart < 0.5 * (a.axis < 3 ? task_.step_m : task_.step_rad) &&
+             a.via.has_value() == b.via.has_value();
     };
     for (const Guide& other : found_) {
       if (std::equal(contacts.begin(), contacts.end(), other.contacts.begin(), other.contacts.end(),
@@ -118,6 +172,79 @@ class GuideSearch {
       }
     }
     found_.push_back({contacts, {task_.goal}, 1.0});
+  }
+
+  /// The start's spread about a place near what can be touched; empty where no free one was drawn.
+  [[nodiscard]] Belief drawn(NormalDraws& random, Rollout& rollout) const {
+    Eigen::AlignedBox3d box = around(task_.environment);
+    const Vector3 reach = around(task_.held).sizes() + Vector3::Constant(task_.step_m);
+    box.min() -= reach;
+    box.max() += reach;
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      Pose place = seed_.mean;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!searched(task_, axis)) continue;
+        place.position_m[axis] = box.min()[axis] + random.uniform() * box.sizes()[axis];
+      }
+      Belief belief = spread_about(place, rollout);
+      if (!belief.particles.empty()) return belief;
+    }
+    return {};
+  }
+
+  /// Adds the contacts that one push along each axis makes.
+  void push_once(const Belief& belief, std::array<std::vector<ContactAttractor>, 6>& known) {
+    const BeliefSummary from = summarise(belief, task_);
+    const auto ends = succ_.successors(belief, primitives_);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (!ends[i]) continue;
+      const int axis = axis_of(primitives_[i]);
+      const BeliefSummary end = summarise(*ends[i], task_);
+      if (end.spread[axis] >= task_.attractor_ratio * from.spread[axis]) continue;
+      auto& of_axis = known[static_cast<std::size_t>(axis)];
+      const ContactAttractor contact{axis, end.mean, end.spread[axis], 0.0, from.mean};
+      if (of_axis.size() < kMaxContactsAnAxis && !is_known(contact, of_axis)) {
+        of_axis.push_back(contact);
+      }
+    }
+  }
+
+  /// The same face, met from where a step more or less makes no difference.
+  [[nodiscard]] bool is_known(const ContactAttractor& contact,
+                              const std::vector<ContactAttractor>& others) const {
+    return std::any_of(others.begin(), others.end(), [&](const ContactAttractor& other) {
+      const Vector6 apart = displacement_between(contact.mean, other.mean);
+      return std::abs(apart[contact.axis]) < 0.1 * task_.step_m &&
+             (!other.via || apart.head<3>().norm() < task_.step_m);
+    });
+  }
+
+  /// Every order of one contact for every axis that is uncertain.
+  void combine(const std::array<std::vector<ContactAttractor>, 6>& known, double uncertainty_m2,
+               const std::vector<ContactAttractor>& before) {
+    bool last = true;
+    for (int axis = 0; axis < 6; ++axis) {
+      if (seed_.spread[axis] <= 0.0 || contains(before, axis)) continue;
+      for (ContactAttractor contact : known[static_cast<std::size_t>(axis)]) {
+        contact.uncertainty_m2 = std::max(0.0, uncertainty_m2 - share_of(axis));
+        std::vector<ContactAttractor> contacts = before;
+        contacts.push_back(contact);
+        combine(known, contact.uncertainty_m2, contacts);
+        last = false;
+      }
+    }
+    if (last && !before.empty()) keep(before);
+  }
+
+  /// What an axis contributes to the start's uncertainty, m^2.
+  [[nodiscard]] double share_of(int axis) const {
+    double sum = 0.0;
+    for (const Particle& particle : start_.particles) {
+      const double off = displacement_between(seed_.mean, particle.pose)[axis];
+      sum += off * off;
+    }
+    const double weight = axis < 3 ? task_.position_weight : task_.orientation_weight;
+    return weight * sum / static_cast<double>(start_.particles.size());
   }
 
   /// Into a held contact or straight away from it.
@@ -138,21 +265,24 @@ class GuideSearch {
 
 }  // namespace
 
-std::vector<Guide> find_guides(const Task& task, const Belief& start, SuccessorEngine& succ,
-                               Rollout& rollout) {
+Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngine& succ,
+                           Rollout& rollout) {
   GuideSearch search(task, start, succ);
   search.push_from(start, {});
-  const Belief about_goal = search.spread_about_goal(rollout);
+  const Belief about_goal = search.spread_about(task.goal, rollout);
   if (!about_goal.particles.empty()) search.push_from(about_goal, {});
+  if (!search.certain()) search.sample(rollout);
 
-  std::vector<Guide> guides = search.take();
-  if (guides.empty()) return guides;
+  Attractors found{search.take(), {task.goal}};
   if (const std::optional<Pose> mouth = search.mouth()) {
-    Guide through = guides.front();
-    through.goals.insert(through.goals.begin(), *mouth);
-    guides.push_back(std::move(through));
+    found.goals.push_back(*mouth);
+    if (!found.guides.empty()) {
+      Guide through = found.guides.front();
+      through.goals.insert(through.goals.begin(), *mouth);
+      found.guides.push_back(std::move(through));
+    }
   }
-  return guides;
+  return found;
 }
 
 }  // namespace tenon::planner

@@ -52,11 +52,15 @@ Belief cross_polytope(const Task& task, const Start& start) {
     }
     slippery = !slippery;
   }
-  if (belief.particles.empty()) {
-    belief.particles.push_back(
-        {start.pose, {}, {task.friction.nominal, task.contact_stiffness_Npm}});
-  }
-  return belief;
+  return belief.particles.empty() ? single_particle(task, start) : belief;
+}
+
+Belief single_particle(const Task& task, const Start& start) {
+  return {{{start.pose, {}, {task.friction.nominal, task.contact_stiffness_Npm}}}};
+}
+
+Belief start_belief(const Task& task, const Start& start, PlanMethod method) {
+  return method == PlanMethod::kMha ? cross_polytope(task, start) : single_particle(task, start);
 }
 
 Pose mean_pose(const Belief& belief) {

@@ -29,6 +29,13 @@ struct Metric {
 /// tips take turns between its extremes.
 [[nodiscard]] Belief cross_polytope(const Task& task, const Start& start);
 
+/// The nominal pose alone, at nominal friction: what a planner without a notion of uncertainty
+/// sees.
+[[nodiscard]] Belief single_particle(const Task& task, const Start& start);
+
+/// What a method plans for: all of the cross-polytope, or the single particle.
+[[nodiscard]] Belief start_belief(const Task& task, const Start& start, PlanMethod method);
+
 /// Mean position, and the rotation from which the rotation vectors to all others sum up to zero.
 [[nodiscard]] Pose mean_pose(const Belief& belief);
 

@@ -4,9 +4,9 @@
 
 namespace tenon::planner {
 
-BeliefGraph::BeliefGraph(const Task& task, const Belief& start, std::vector<Guide> guides,
+BeliefGraph::BeliefGraph(const Task& task, const Belief& start, Attractors attractors,
                          SuccessorEngine& succ)
-    : task_(task), guides_(std::move(guides)), succ_(succ), steps_(step_primitives(task)) {
+    : task_(task), attractors_(std::move(attractors)), succ_(succ), steps_(step_primitives(task)) {
   number(start);
 }
 
@@ -14,12 +14,14 @@ bool BeliefGraph::is_goal(StateId state) const { return at_goal(summaries_[state
 
 double BeliefGraph::heuristic(std::size_t v, StateId state) const {
   if (v == 0) return anchor_heuristic(summaries_[state], task_);
-  return foliated_heuristic(summaries_[state], guides_[v - 1], task_);
+  return foliated_heuristic(summaries_[state], attractors_.guides[v - 1], task_);
 }
 
 std::vector<Primitive> BeliefGraph::primitives(StateId state) const {
   std::vector<Primitive> all = steps_;
-  if (auto direct = direct_primitive(task_, summaries_[state].mean)) all.push_back(*direct);
+  for (std::size_t i = 0; i < attractors_.goals.size(); ++i) {
+    if (const auto to_goal = direct(state, i)) all.push_back(*to_goal);
+  }
   std::erase_if(all, [&](const Primitive& p) { return refused_.contains({state, p.label}); });
   return all;
 }
@@ -45,9 +47,14 @@ Vector6 BeliefGraph::displacement(StateId state, int label) const {
   for (const Primitive& primitive : steps_) {
     if (primitive.label == label) return primitive.displacement;
   }
-  const auto direct = direct_primitive(task_, summaries_[state].mean);
-  assert(label == kDirectLabel && direct.has_value());
-  return direct->displacement;
+  const auto to_goal = direct(state, static_cast<std::size_t>(label - kDirectLabel));
+  assert(to_goal.has_value());
+  return to_goal->displacement;
+}
+
+std::optional<Primitive> BeliefGraph::direct(StateId state, std::size_t goal) const {
+  return direct_primitive(task_, summaries_[state].mean, attractors_.goals[goal],
+                          kDirectLabel + static_cast<int>(goal));
 }
 
 StateId BeliefGraph::number(const Belief& belief) {

@@ -2,10 +2,12 @@
 // The lattice of beliefs as a search graph: numbers for beliefs, costs and heuristics for edges.
 
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "planner/attractors.h"
 #include "planner/heuristics.h"
 #include "planner/search_graph.h"
 #include "planner/successor.h"
@@ -17,13 +19,14 @@ namespace tenon::planner {
 class BeliefGraph final : public SearchGraph {
  public:
   /// task and succ must outlive this.
-  BeliefGraph(const Task& task, const Belief& start, std::vector<Guide> guides,
-              SuccessorEngine& succ);
+  BeliefGraph(const Task& task, const Belief& start, Attractors attractors, SuccessorEngine& succ);
 
   [[nodiscard]] StateId start() const override { return 0; }
   [[nodiscard]] bool is_goal(StateId state) const override;
   [[nodiscard]] std::vector<Edge> successors(StateId state) override;
-  [[nodiscard]] std::size_t inadmissible_count() const override { return guides_.size(); }
+  [[nodiscard]] std::size_t inadmissible_count() const override {
+    return attractors_.guides.size();
+  }
   [[nodiscard]] double heuristic(std::size_t v, StateId state) const override;
 
   /// The edge does not exist: certification contradicted it.
@@ -38,10 +41,12 @@ class BeliefGraph final : public SearchGraph {
 
  private:
   [[nodiscard]] std::vector<Primitive> primitives(StateId state) const;
+  /// Straight to goal attractor `goal`.
+  [[nodiscard]] std::optional<Primitive> direct(StateId state, std::size_t goal) const;
   StateId number(const Belief& belief);
 
   const Task& task_;
-  std::vector<Guide> guides_;
+  Attractors attractors_;
   SuccessorEngine& succ_;
   std::vector<Primitive> steps_;
   std::vector<Belief> beliefs_;

@@ -85,12 +85,16 @@ double cost_of(const std::vector<Chain>& chains, const Task& task) {
 
 }  // namespace
 
-std::vector<CertificationVariant> certification_variants(const Task& task) {
+std::vector<CertificationVariant> certification_variants(const Task& task, PlanMethod method) {
   const std::int64_t step_us = task.rollout_step_us;
-  return {{"as planned", std::nullopt, step_us},
-          {"half the integration step", std::nullopt, step_us / 2},
-          {"lowest friction", task.friction.low, step_us},
-          {"highest friction", task.friction.high, step_us}};
+  std::vector<CertificationVariant> variants = {
+      {"as planned", std::nullopt, step_us},
+      {"half the integration step", std::nullopt, step_us / 2}};
+  if (method == PlanMethod::kMha) {
+    variants.push_back({"lowest friction", task.friction.low, step_us});
+    variants.push_back({"highest friction", task.friction.high, step_us});
+  }
+  return variants;
 }
 
 bool Certification::holds() const { return refuting() == nullptr; }
@@ -151,11 +155,11 @@ Certification certify(std::span<const std::uint8_t> bytes, const Task& task, Rol
   }
   const Plan& plan = *decoded.plan;
   check_same_task(plan, task);
-  const Belief belief = cross_polytope(task, start_of(plan, task));
+  const Belief belief = start_belief(task, start_of(plan, task), plan.method);
   const std::size_t particles = belief.particles.size();
 
   Certification certification;
-  for (const CertificationVariant& variant : certification_variants(task)) {
+  for (const CertificationVariant& variant : certification_variants(task, plan.method)) {
     certification.runs.push_back({variant, std::vector<Chain>(particles), false, {}});
   }
   pool.run(certification.runs.size() * particles, [&](Rollout& rollout, std::size_t i) {

@@ -21,8 +21,10 @@ struct CertificationVariant {
   std::int64_t step_us = 0;
 };
 
-/// As planned, at half the integration step, and at the friction extremes.
-[[nodiscard]] std::vector<CertificationVariant> certification_variants(const Task& task);
+/// As planned, at half the integration step, and at the friction extremes. A baseline, which knows
+/// of no uncertainty, has not planned for the last two.
+[[nodiscard]] std::vector<CertificationVariant> certification_variants(const Task& task,
+                                                                       PlanMethod method);
 
 /// Where and why a variant does not hold.
 struct Disagreement {
@@ -47,10 +49,11 @@ struct Certification {
   [[nodiscard]] const VariantRun* refuting() const;
 };
 
-/// Decodes the bytes and runs the plan's own transitions. A variant holds where every particle's
-/// chain is done at the goal, all of them within its tolerances. At half the integration step every
-/// move must also end as in the first variant, within 0.5 mm or 0.2 degrees; under another friction
-/// a move may end otherwise, as long as the plan goes on from there to the goal.
+/// Decodes the bytes and runs the plan's own transitions, for the particles that its method plans
+/// for. A variant holds where every particle's chain is done at the goal, all of them within its
+/// tolerances. At half the integration step every move must also end as in the first variant,
+/// within 0.5 mm or 0.2 degrees; under another friction a move may end otherwise, as long as the
+/// plan goes on from there to the goal.
 /// @throws InputError where the bytes are no plan, or not one of this task
 [[nodiscard]] Certification certify(std::span<const std::uint8_t> bytes, const Task& task,
                                     RolloutPool& pool);

@@ -3,14 +3,37 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/task/inserted.h"
+
 namespace tenon::planner {
 namespace {
 
+double step_along(const Task& task, int axis) { return axis < 3 ? task.step_m : task.step_rad; }
+
 /// Steps along one axis; a contact takes at least one.
 double steps_along(const Task& task, int axis, double way) {
-  const double step = axis < 3 ? task.step_m : task.step_rad;
   constexpr double kRounding = 1e-6;
-  return std::max(1.0, std::ceil(way / step - kRounding));
+  return std::max(1.0, std::ceil(way / step_along(task, axis) - kRounding));
+}
+
+/// Moves `at` beside the place where a push begins, and pays for it. Half a step off is there.
+double cost_of_via(const ContactAttractor& contact, const Task& task, Pose& at,
+                   double uncertainty_m2) {
+  Vector6 aside = displacement_between(at, *contact.via);
+  double steps = 0.0;
+  for (int axis = 0; axis < 6; ++axis) {
+    const double near = 0.5 * step_along(task, axis);
+    if (axis == contact.axis || std::abs(aside[axis]) <= near) {
+      aside[axis] = 0.0;
+    } else {
+      aside[axis] -= std::copysign(near, aside[axis]);
+      steps += std::abs(aside[axis]) / step_along(task, axis);
+    }
+  }
+  const Pose from = at;
+  at = displaced(at, aside);
+  return task.distance_weight_per_m * distance(from, at, metric_of(task)) +
+         task.uncertainty_weight_per_m2 * uncertainty_m2 * steps;
 }
 
 double cost_of_contacts(const BeliefSummary& belief, const Guide& guide, const Task& task, Pose& at,
@@ -20,6 +43,7 @@ double cost_of_contacts(const BeliefSummary& belief, const Guide& guide, const T
   for (const ContactAttractor& contact : guide.contacts) {
     const int axis = contact.axis;
     if (belief.spread[axis] <= contact.spread + together) continue;
+    if (contact.via) cost += cost_of_via(contact, task, at, uncertainty_m2);
     Vector6 along = Vector6::Zero();
     along[axis] = displacement_between(at, contact.mean)[axis];
     const Pose touching = displaced(at, along);
@@ -36,11 +60,12 @@ double cost_of_contacts(const BeliefSummary& belief, const Guide& guide, const T
 
 BeliefSummary summarise(const Belief& belief, const Task& task) {
   const Metric metric = metric_of(task);
-  BeliefSummary summary{mean_pose(belief), uncertainty(belief, metric), 0.0, Vector6::Zero()};
+  BeliefSummary summary{mean_pose(belief), uncertainty(belief, metric)};
   for (const Particle& particle : belief.particles) {
     const Vector6 off = displacement_between(summary.mean, particle.pose);
     summary.spread = summary.spread.cwiseMax(off.cwiseAbs());
     summary.farthest_m = std::max(summary.farthest_m, distance(particle.pose, task.goal, metric));
+    summary.inserted = summary.inserted && inserted(task, particle.pose);
   }
   return summary;
 }
@@ -53,7 +78,7 @@ double edge_cost(const BeliefSummary& from, const BeliefSummary& to, const Task&
 bool at_goal(const BeliefSummary& belief, const Task& task) {
   return belief.farthest_m <= task.goal_tolerance_m &&
          distance(belief.mean, task.goal, metric_of(task)) <= task.goal_tolerance_m &&
-         belief.uncertainty_m2 <= task.goal_uncertainty_m2;
+         belief.uncertainty_m2 <= task.goal_uncertainty_m2 && belief.inserted;
 }
 
 double anchor_heuristic(const BeliefSummary& belief, const Task& task) {

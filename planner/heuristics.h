@@ -1,6 +1,7 @@
 #pragma once
 // Costs and heuristics of the belief search. Pure; any thread.
 
+#include <optional>
 #include <vector>
 
 #include "planner/belief.h"
@@ -14,17 +15,21 @@ struct BeliefSummary {
   double uncertainty_m2 = 0.0;
   double farthest_m = 0.0;           ///< distance to the goal of the particle farthest from it
   Vector6 spread = Vector6::Zero();  ///< by axis, of the particle farthest from the mean, m or rad
+  bool inserted = true;              ///< every particle is where the task wants it inserted
 };
 
 [[nodiscard]] BeliefSummary summarise(const Belief& belief, const Task& task);
 
-/// A push along one axis after which the particles stand together along it: contact with a face. A
-/// face may be met anywhere, so only the coordinate along the axis leads there.
+/// A push along one axis after which the particles stand together along it: contact with a face, or
+/// the loss of one at its edge.
 struct ContactAttractor {
   int axis = 0;
   Pose mean;            ///< of the belief after the push
   double spread = 0.0;  ///< along the axis after the push, m or rad
   double uncertainty_m2 = 0.0;
+  /// Where a push must begin that would miss a small face from elsewhere; the coordinate along the
+  /// axis does not count. Empty for a face that may be met anywhere.
+  std::optional<Pose> via;
 };
 
 /// Where an inadmissible heuristic leads: to contacts in turn, then past goal attractors, of which
@@ -41,7 +46,7 @@ struct Guide {
 [[nodiscard]] double edge_cost(const BeliefSummary& from, const BeliefSummary& to,
                                const Task& task);
 
-/// d(mean, goal) <= d_tol, u <= u_tol, and every particle by itself within d_tol.
+/// d(mean, goal) <= d_tol, u <= u_tol, and every particle by itself within d_tol and inserted.
 [[nodiscard]] bool at_goal(const BeliefSummary& belief, const Task& task);
 
 /// 0 at the goal, else w_d max(0, d(s, goal) - d_tol) + w_u u(s). Consistent: the term in u cancels

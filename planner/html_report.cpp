@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <vector>
 
 #include "planner/heuristics.h"
+#include "planner/report_canvas.h"
+#include "planner/summary.h"
 #include "planner/text.h"
 
 namespace tenon::planner {
@@ -16,7 +19,8 @@ constexpr std::array<const char*, 8> kColours = {"#1f77b4", "#d62728", "#2ca02c"
                                                  "#ff7f0e", "#17becf", "#8c564b", "#e377c2"};
 // A direction counts as settled once its spread is below this part of what it was.
 constexpr double kCollapsed = 0.2;
-constexpr double kWorthTelling_m = 2e-3;
+constexpr double kWorthTelling = 2e-3;  // m or rad
+constexpr double kAboveFloor_m = 1e-3;  // where a section seen from above is cut, over the tip
 
 std::string escaped(const std::string& text) {
   std::string safe;
@@ -26,17 +30,20 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-/// The belief after each number of steps, of the chain as planned.
+std::string colour(std::size_t particle) { return kColours[particle % kColours.size()]; }
+
+/// The belief after each number of steps.
 struct Node {
   std::vector<Vector3> particles_m;
-  Vector3 spread_m = Vector3::Zero();  ///< standard deviation an axis
+  Vector6 spread = Vector6::Zero();  ///< standard deviation an axis, m or rad
   double uncertainty_m2 = 0.0;
 };
 
 std::vector<Node> nodes_of(const std::vector<Chain>& chains, const Task& task) {
+  std::vector<Node> nodes;
+  if (chains.empty()) return nodes;
   std::size_t count = chains.front().moves.size();
   for (const Chain& chain : chains) count = std::min(count, chain.moves.size());
-  std::vector<Node> nodes;
   for (std::size_t i = 0; i <= count; ++i) {
     Belief belief;
     Node node;
@@ -44,78 +51,31 @@ std::vector<Node> nodes_of(const std::vector<Chain>& chains, const Task& task) {
       belief.particles.push_back({i == 0 ? chain.start.pose : chain.moves[i - 1].pose, {}, {}});
       node.particles_m.push_back(belief.particles.back().pose.position_m);
     }
-    const Vector3 mean = mean_pose(belief).position_m;
-    for (const Vector3& p : node.particles_m) node.spread_m += (p - mean).cwiseAbs2();
-    node.spread_m = (node.spread_m / static_cast<double>(chains.size())).cwiseSqrt();
+    const Pose mean = mean_pose(belief);
+    for (const Particle& particle : belief.particles) {
+      node.spread += displacement_between(mean, particle.pose).cwiseAbs2();
+    }
+    node.spread = (node.spread / static_cast<double>(chains.size())).cwiseSqrt();
     node.uncertainty_m2 = uncertainty(belief, metric_of(task));
     nodes.push_back(node);
   }
   return nodes;
 }
 
-/// The plane that the page shows: x to the right, y up, in millimetres.
-class Canvas {
- public:
-  explicit Canvas(const Task& task, const Vector3& start) {
-    grow(start);
-    grow(task.goal.position_m);
-    for (const Shape& shape : task.environment) {
-      for (const Vector3& corner : footprint(shape, Pose{})) grow(corner);
-    }
-    low_ -= Eigen::Vector2d::Constant(0.02);
-    high_ += Eigen::Vector2d::Constant(0.02);
+/// The draws that went through the whole plan.
+std::vector<Chain> finished(const Validation& validation) {
+  std::vector<Chain> chains;
+  for (const Draw& draw : validation.draws) {
+    if (draw.chain.done) chains.push_back(draw.chain);
   }
+  return chains;
+}
 
-  [[nodiscard]] std::string open(int width_px) const {
-    const Eigen::Vector2d size = 1e3 * (high_ - low_);
-    return format("<svg width='%d' viewBox='%.1f %.1f %.1f %.1f'>\n", width_px, 1e3 * low_.x(),
-                  -1e3 * high_.y(), size.x(), size.y());
-  }
-
-  /// Corners of a box, or a ring about a cylinder, as seen from above.
-  static std::vector<Vector3> footprint(const Shape& shape, const Pose& frame) {
-    std::vector<Vector3> corners;
-    const Pose pose = compose(frame, shape.pose);
-    const int count = shape.kind == Shape::Kind::kBox ? 4 : 24;
-    for (int i = 0; i < count; ++i) {
-      const double angle = 2.0 * M_PI * (i + 0.5) / count;
-      const double reach = shape.kind == Shape::Kind::kBox ? std::sqrt(2.0) : 1.0;
-      const Vector3 local(0.5 * reach * std::cos(angle) * shape.size_m.x(),
-                          0.5 * reach * std::sin(angle) * shape.size_m.y(), 0.0);
-      corners.push_back(pose.position_m + pose.orientation * local);
-    }
-    return corners;
-  }
-
-  static std::string point(const Vector3& p) {
-    return format("%.2f,%.2f ", 1e3 * p.x(), -1e3 * p.y());
-  }
-
-  static std::string polygon(const std::vector<Vector3>& corners, const char* style) {
-    std::string text = "<polygon points='";
-    for (const Vector3& corner : corners) text += point(corner);
-    return text + "' " + style + "/>\n";
-  }
-
-  static std::string polyline(const std::vector<Vector3>& points, const std::string& style) {
-    std::string text = "<polyline fill='none' points='";
-    for (const Vector3& p : points) text += point(p);
-    return text + "' " + style + "/>\n";
-  }
-
-  static std::string dot(const Vector3& p, double radius_mm, const std::string& style) {
-    return format("<circle cx='%.2f' cy='%.2f' r='%.1f' ", 1e3 * p.x(), -1e3 * p.y(), radius_mm) +
-           style + "/>\n";
-  }
-
- private:
-  void grow(const Vector3& p) {
-    low_ = low_.cwiseMin(p.head<2>());
-    high_ = high_.cwiseMax(p.head<2>());
-  }
-  Eigen::Vector2d low_ = Eigen::Vector2d::Constant(1e9);
-  Eigen::Vector2d high_ = Eigen::Vector2d::Constant(-1e9);
-};
+std::string names_of(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + escaped(name);
+  return text;
+}
 
 class Report {
  public:
@@ -126,8 +86,8 @@ class Report {
         chains_(certification.runs.front().chains),
         certified_(certification.holds()),
         validation_(validation),
-        nodes_(nodes_of(chains_, task)),
-        canvas_(task, plan.start.position_m) {}
+        // A single particle knows of no uncertainty; how uncertain it really is, draws tell.
+        nodes_(nodes_of(is_baseline() ? finished(validation) : chains_, task)) {}
 
   [[nodiscard]] std::string html() const {
     const std::string title = escaped(plan_.task_name) + ", start " + escaped(plan_.start_name);
@@ -138,70 +98,120 @@ class Report {
         "margin:28px 0 8px}table{border-collapse:collapse;font-size:13px}td,th{border-bottom:1px "
         "solid #ddd;padding:3px 9px;text-align:left;vertical-align:top}th{background:#f4f4f4}"
         "figure{display:inline-block;width:200px;margin:0 12px 14px 0;vertical-align:top;"
-        "font-size:12px}figcaption b{color:#b00}svg{background:#fff;display:block}"
-        ".num{text-align:right}</style></head>\n<body>\n<h1>" +
-        title + "</h1>\n" + verdict();
-    page += "<h2>Seen from above</h2>\n" + overview();
+        "font-size:12px}svg{background:#fff;display:block;max-height:640px}.num{text-align:right}"
+        "</style></head>\n<body>\n<h1>" +
+        title + "</h1>\n" + verdict() + reasons();
+    for (const View& view : views_of(plan_.coordinates)) {
+      page += std::string("<h2>") + view.title + "</h2>\n" + overview(view);
+    }
+    page +=
+        "<p>Blue: the part at its nominal start; green: at the goal. Coloured: the paths of the "
+        "particles, from their hollow dots, as certified. Grey: " +
+        std::to_string(validation_.draws.size()) + " random starts.</p>\n";
     page += "<h2>Uncertainty over the steps</h2>\n" + uncertainty_chart();
     page +=
         "<h2>What each step does</h2>\n<p>Hollow dots: particles before the step, filled: after "
-        "it. Red: a part that is touched. Bold: a direction whose uncertainty the step "
-        "removes.</p>\n" +
+        "it. Red: what is touched. Bold: a direction whose uncertainty the step removes.</p>\n" +
         frames();
     page += "<h2>Steps</h2>\n" + table();
     return page + "</body></html>\n";
   }
 
  private:
+  [[nodiscard]] bool is_baseline() const { return plan_.method != PlanMethod::kMha; }
+
   [[nodiscard]] std::string verdict() const {
-    const Vector3 before = nodes_.front().spread_m;
-    const Vector3 after = nodes_.back().spread_m;
-    std::string text =
-        format("<p>%zu steps bring the tool from an uncertainty of ", plan_.steps.size());
-    text += spread_text(before) + " to " + spread_text(after) +
-            format(" (standard deviations of the particles), within %.1f mm of the goal. ",
-                   1e3 * plan_.goal_tolerance_m);
-    text += format("In validation %u of %u random starts ended there. ", plan_.draws_at_goal,
-                   plan_.draws);
-    text += certified_ ? "Certified again for this report: the chain holds.</p>\n"
-                       : "<b>Certified again for this report: the chain does NOT hold.</b></p>\n";
-    return text;
+    std::string text = "<p>";
+    if (is_baseline()) {
+      text += format(
+          "%zu steps by the baseline <b>%s</b>, which plans for the nominal start alone. It ends "
+          "there within %.1f mm of the goal. ",
+          plan_.steps.size(), to_string(plan_.method), 1e3 * plan_.goal_tolerance_m);
+    } else {
+      text += format("%zu steps bring the tool from an uncertainty of ", plan_.steps.size()) +
+              spread_text(nodes_.front().spread) + " to " + spread_text(nodes_.back().spread) +
+              format(" (standard deviations of the particles), within %.1f mm of the goal. ",
+                     1e3 * plan_.goal_tolerance_m);
+    }
+    text += format("In validation %u of %u random starts ended there; repeated for this page: ",
+                   plan_.draws_at_goal, plan_.draws) +
+            estimate_text(validation_, task_) + ". ";
+    return text + (certified_
+                       ? "Certified again for this page: the chain holds.</p>\n"
+                       : "<b>Certified again for this page: the chain does NOT hold.</b></p>\n");
   }
 
-  [[nodiscard]] std::string spread_text(const Vector3& spread_m) const {
+  /// Each direction that contact settles, and with what.
+  [[nodiscard]] std::string reasons() const {
+    std::string items;
+    for (int axis = 0; axis < 6 && !is_baseline(); ++axis) {
+      const double before = nodes_.front().spread[axis];
+      const double after = nodes_.back().spread[axis];
+      if (before < kWorthTelling || after > kCollapsed * before) continue;
+      std::set<std::string> touched;
+      std::string steps;
+      for (std::size_t step = 0; step + 1 < nodes_.size(); ++step) {
+        const double settled = nodes_[step].spread[axis] - nodes_[step + 1].spread[axis];
+        if (settled < kWorthTelling) continue;
+        touched.merge(found_or_lost(step));
+        steps += format("%s%zu", steps.empty() ? "" : ", ", step);
+      }
+      items += "<li>" + std::string(axis_name(axis)) + " " + amount(before, axis) + " &rarr; " +
+               amount(after, axis) + ": contact with " + names_of(touched) +
+               " begins or ends, in steps " + steps + "</li>\n";
+    }
+    if (items.empty()) return {};
+    return "<p>Why it works: wherever the tool starts, contact puts it at a known place "
+           "(standard deviations at the start and at the end).</p>\n<ul>\n" +
+           items + "</ul>\n";
+  }
+
+  [[nodiscard]] static std::string amount(double value, int axis) {
+    return format(axis < 3 ? "%.1f mm" : "%.2f&deg;", shown(value, axis));
+  }
+
+  [[nodiscard]] std::string spread_text(const Vector6& spread) const {
     std::string text;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 6; ++axis) {
       if ((plan_.coordinates >> axis & 1U) == 0) continue;
-      text +=
-          format("%s%s %.1f mm", text.empty() ? "" : ", ", axis_name(axis), 1e3 * spread_m[axis]);
+      text += (text.empty() ? "" : ", ") + std::string(axis_name(axis)) + " " +
+              amount(spread[axis], axis);
     }
     return text;
   }
 
   /// What the part stands on rather than bumps into.
   [[nodiscard]] bool is_floor(const Shape& shape) const {
-    return shape.pose.position_m.z() + 0.5 * shape.size_m.z() <= plan_.start.position_m.z() + 1e-3;
+    return shape.pose.position_m.z() + 0.5 * shape.size_m.z() <=
+           plan_.goal.position_m.z() + kAboveFloor_m;
   }
 
-  [[nodiscard]] std::string environment(const std::set<std::string>& touched) const {
-    std::string svg;
-    for (const bool floor : {true, false}) {
-      for (const Shape& shape : task_.environment) {
-        if (is_floor(shape) != floor) continue;
-        const char* style = floor                          ? "fill='#f3efe6'"
-                            : touched.contains(shape.name) ? "fill='#d33'"
-                                                           : "fill='#8a8172'";
-        svg += Canvas::polygon(Canvas::footprint(shape, Pose{}), style);
-      }
+  /// Filled where the plane through the goal cuts it; in outline what stands elsewhere.
+  [[nodiscard]] std::string environment(const Canvas& canvas, const View& view,
+                                        const std::set<std::string>& touched) const {
+    double depth_m = plan_.goal.position_m[view.along];
+    if (view.along == 2) depth_m += kAboveFloor_m;
+    std::string elsewhere;
+    std::string cut;
+    for (const Shape& shape : task_.environment) {
+      const bool red = touched.contains(shape.name);
+      const std::string section =
+          canvas.section(shape, depth_m, red ? "fill='#d33'" : "fill='#8a8172'");
+      cut += section;
+      if (!section.empty()) continue;
+      const bool floor = view.along == 2 && is_floor(shape);
+      elsewhere += canvas.shadow(shape, Pose{},
+                                 floor ? "fill='#f3efe6'"
+                                 : red ? "fill='#d33' fill-opacity='.25'"
+                                       : "fill='#8a8172' fill-opacity='.12'");
     }
-    return svg;
+    return elsewhere + cut;
   }
 
-  [[nodiscard]] std::string part_at(const Pose& pose, const char* style) const {
+  [[nodiscard]] std::string part_at(const Canvas& canvas, const Pose& pose,
+                                    const char* style) const {
     std::string svg;
-    for (const Shape& shape : task_.held) {
-      svg += Canvas::polygon(Canvas::footprint(shape, pose), style);
-    }
+    for (const Shape& shape : task_.held) svg += canvas.shadow(shape, pose, style);
     return svg;
   }
 
@@ -211,31 +221,26 @@ class Report {
     return path;
   }
 
-  [[nodiscard]] std::string overview() const {
-    std::string svg = canvas_.open(1060) + environment({});
-    svg +=
-        part_at(plan_.start, "fill='#1f77b4' fill-opacity='.12' stroke='#1f77b4' stroke-width='2'");
-    svg +=
-        part_at(plan_.goal, "fill='#2ca02c' fill-opacity='.2' stroke='#2ca02c' stroke-width='3'");
+  [[nodiscard]] std::string overview(const View& view) const {
+    const Canvas canvas(view, task_, plan_.start.position_m);
+    std::string svg = canvas.open(1060) + environment(canvas, view, {});
+    svg += part_at(canvas, plan_.start, "fill='#1f77b4' fill-opacity='.12' stroke='#1f77b4'");
+    svg += part_at(canvas, plan_.goal, "fill='#2ca02c' fill-opacity='.2' stroke='#2ca02c'");
     for (const Draw& draw : validation_.draws) {
-      svg += Canvas::polyline(path_of(draw.chain),
-                              "stroke='#000' stroke-opacity='.08' stroke-width='1.5'");
+      svg += canvas.polyline(path_of(draw.chain), 1.3, "stroke='#000' stroke-opacity='.06'");
+      svg += canvas.dot(draw.chain.end().position_m, 1.5, "fill='#000' fill-opacity='.35'");
     }
     for (std::size_t p = 0; p < chains_.size(); ++p) {
-      const std::string colour = kColours[p % kColours.size()];
       const std::vector<Vector3> path = path_of(chains_[p]);
-      svg += Canvas::polyline(path, "stroke='" + colour + "' stroke-width='3' stroke-opacity='.8'");
-      for (const Vector3& rest : path) svg += Canvas::dot(rest, 4.0, "fill='" + colour + "'");
-      svg += Canvas::dot(path.front(), 8.0, "fill='#fff' stroke-width='3' stroke='" + colour + "'");
+      svg += canvas.polyline(path, 2.5, "stroke='" + colour(p) + "' stroke-opacity='.8'");
+      for (const Vector3& rest : path) svg += canvas.dot(rest, 3.5, "fill='" + colour(p) + "'");
+      svg += canvas.dot(path.front(), 6.5, "fill='#fff' stroke='" + colour(p) + "'");
     }
-    svg += "</svg>\n";
-    return svg +
-           "<p>Blue: the part at its nominal start; green: at the goal. Coloured: the paths of "
-           "the particles, from their hollow dots, as certified. Grey: " +
-           std::to_string(validation_.draws.size()) + " random starts.</p>\n";
+    return svg + "</svg>\n";
   }
 
   [[nodiscard]] std::string uncertainty_chart() const {
+    if (nodes_.empty()) return "<p>No random start went through all steps.</p>\n";
     // One bar a node, logarithmic from a hundredth of the goal's tolerance up.
     const double floor_m2 = 1e-2 * task_.goal_uncertainty_m2;
     const auto height = [&](double u_m2) {
@@ -260,21 +265,37 @@ class Report {
         "<line x1='20' x2='1050' y1='%.1f' y2='%.1f' stroke='#2ca02c' "
         "stroke-dasharray='6 4'/>",
         170.0 - height(task_.goal_uncertainty_m2), 170.0 - height(task_.goal_uncertainty_m2));
-    return svg +
-           "</svg>\n<p>Root of u on a logarithmic scale; the dashed line is what the goal "
-           "demands.</p>\n";
+    return svg + "</svg>\n<p>Root of u of the " + (is_baseline() ? "random starts" : "particles") +
+           " on a logarithmic scale; the dashed line is what the goal demands.</p>\n";
   }
 
-  /// The environment's shapes that any particle touches after the step.
-  [[nodiscard]] std::set<std::string> touched_after(std::size_t step) const {
+  /// What a particle touches after its move, of what it may bump into.
+  [[nodiscard]] std::set<std::string> touched_by(const Chain& chain, std::size_t move) const {
     std::set<std::string> names;
     for (const Shape& shape : task_.environment) {
-      if (is_floor(shape)) continue;
-      for (const Chain& chain : chains_) {
-        for (const std::string& pair : chain.touching[step]) {
-          if (pair.ends_with("-" + shape.name)) names.insert(shape.name);
-        }
+      if (is_floor(shape) && (plan_.coordinates >> 2 & 1U) == 0) continue;
+      for (const std::string& pair : chain.touching[move]) {
+        if (pair.ends_with("-" + shape.name)) names.insert(shape.name);
       }
+    }
+    return names;
+  }
+
+  [[nodiscard]] std::set<std::string> touched_after(std::size_t step) const {
+    std::set<std::string> names;
+    for (const Chain& chain : chains_) names.merge(touched_by(chain, step));
+    return names;
+  }
+
+  /// What some particle touches after the step and did not before, or the other way round.
+  [[nodiscard]] std::set<std::string> found_or_lost(std::size_t step) const {
+    std::set<std::string> names;
+    for (const Chain& chain : chains_) {
+      const std::set<std::string> now = touched_by(chain, step);
+      const std::set<std::string> before =
+          step == 0 ? std::set<std::string>{} : touched_by(chain, step - 1);
+      std::set_symmetric_difference(now.begin(), now.end(), before.begin(), before.end(),
+                                    std::inserter(names, names.end()));
     }
     return names;
   }
@@ -285,23 +306,29 @@ class Report {
       const double d = plan_.steps[step].displacement[axis];
       if (d == 0.0) continue;
       text += (text.empty() ? "" : ", ") +
-              (axis < 3 ? format("%s %+.0f mm", axis_name(axis), 1e3 * d)
-                        : format("%s %+.1f deg", axis_name(axis), shown(d, axis)));
+              format(axis < 3 ? "%s %+.0f mm" : "%s %+.1f&deg;", axis_name(axis), shown(d, axis));
     }
     return text;
   }
 
-  [[nodiscard]] std::string collapse_text(std::size_t step) const {
+  /// A direction that a step makes more certain.
+  struct Shrinkage {
     std::string text;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double before = nodes_[step].spread_m[axis];
-      const double after = nodes_[step + 1].spread_m[axis];
-      if (before - after < kWorthTelling_m) continue;
-      const std::string shrink =
-          format("%s %.1f &rarr; %.1f mm", axis_name(axis), 1e3 * before, 1e3 * after);
-      text += "<br>" + (after < kCollapsed * before ? "<b>" + shrink + "</b>" : shrink);
+    bool collapsed = false;
+  };
+
+  [[nodiscard]] std::vector<Shrinkage> shrinkages(std::size_t step) const {
+    std::vector<Shrinkage> found;
+    if (step + 1 >= nodes_.size()) return found;
+    for (int axis = 0; axis < 6; ++axis) {
+      const double before = nodes_[step].spread[axis];
+      const double after = nodes_[step + 1].spread[axis];
+      if (before - after < kWorthTelling) continue;
+      found.push_back({std::string(axis_name(axis)) + " " + amount(before, axis) + " &rarr; " +
+                           amount(after, axis),
+                       after < kCollapsed * before});
     }
-    return text;
+    return found;
   }
 
   [[nodiscard]] std::string outcomes_text(std::size_t step) const {
@@ -317,38 +344,47 @@ class Report {
     return text;
   }
 
+  [[nodiscard]] std::string frame(const Canvas& canvas, const View& view, std::size_t step) const {
+    std::string svg = canvas.open(200) + environment(canvas, view, touched_after(step));
+    svg += part_at(canvas, plan_.goal, "fill='none' stroke='#2ca02c'");
+    for (std::size_t p = 0; p < chains_.size(); ++p) {
+      const Chain& chain = chains_[p];
+      const Pose& from = step == 0 ? chain.start.pose : chain.moves[step - 1].pose;
+      const Pose& to = chain.moves[step].pose;
+      svg += part_at(canvas, to, "fill='#000' fill-opacity='.05' stroke='#555'");
+      svg += canvas.polyline({from.position_m, to.position_m}, 7.0, "stroke='" + colour(p) + "'");
+      svg += canvas.dot(from.position_m, 11.0, "fill='#fff' stroke='" + colour(p) + "'");
+      svg += canvas.dot(to.position_m, 12.0, "fill='" + colour(p) + "'");
+    }
+    return svg + "</svg>";
+  }
+
   [[nodiscard]] std::string frames() const {
+    std::size_t steps = plan_.steps.size();
+    for (const Chain& chain : chains_) steps = std::min(steps, chain.moves.size());
     std::string html;
-    for (std::size_t step = 0; step + 1 < nodes_.size(); ++step) {
-      std::string svg = canvas_.open(200) + environment(touched_after(step));
-      svg += part_at(plan_.goal, "fill='none' stroke='#2ca02c' stroke-width='5'");
-      for (std::size_t p = 0; p < chains_.size(); ++p) {
-        const std::string colour = kColours[p % kColours.size()];
-        const Vector3& from = nodes_[step].particles_m[p];
-        const Vector3& to = nodes_[step + 1].particles_m[p];
-        svg += part_at(chains_[p].moves[step].pose,
-                       "fill='#000' fill-opacity='.05' stroke='#555' stroke-width='2'");
-        svg += Canvas::polyline({from, to}, "stroke-width='8' stroke='" + colour + "'");
-        svg += Canvas::dot(from, 12.0, "fill='#fff' stroke-width='5' stroke='" + colour + "'");
-        svg += Canvas::dot(to, 13.0, "fill='" + colour + "'");
+    for (std::size_t step = 0; step < steps; ++step) {
+      html += "<figure>";
+      for (const View& view : views_of(plan_.coordinates)) {
+        html += frame(Canvas(view, task_, plan_.start.position_m), view, step);
       }
-      std::string touched;
-      for (const std::string& name : touched_after(step)) {
-        touched += (touched.empty() ? "" : ", ") + escaped(name);
+      const std::set<std::string> touched = touched_after(step);
+      html += format("<figcaption>step %zu: ", step) + displacement_text(step) + "<br>" +
+              outcomes_text(step) + (touched.empty() ? "" : "<br>touches " + names_of(touched));
+      for (const Shrinkage& shrinkage : shrinkages(step)) {
+        html += "<br>" + (shrinkage.collapsed ? "<b>" + shrinkage.text + "</b>" : shrinkage.text);
       }
-      html += "<figure>" + svg + "</svg><figcaption>" + format("step %zu: ", step) +
-              displacement_text(step) + "<br>" + outcomes_text(step) +
-              (touched.empty() ? "" : "<br>touches " + touched) + collapse_text(step) +
-              "</figcaption></figure>\n";
+      html += "</figcaption></figure>\n";
     }
     return html;
   }
 
-  [[nodiscard]] std::string rule_text(const OutcomeRule& rule) const {
+  [[nodiscard]] std::string envelope_text(const OutcomeRule& rule) const {
+    if (!plan_.check_envelopes) return "not checked";
     std::string text;
     for (int axis = 0; axis < 6; ++axis) {
       if ((plan_.coordinates >> axis & 1U) == 0) continue;
-      text += format("%s %.1f to %.1f ", axis_name(axis),
+      text += format("%s%s %.1f to %.1f", text.empty() ? "" : ", ", axis_name(axis),
                      shown(rule.envelope.travelled_min[axis], axis),
                      shown(rule.envelope.travelled_max[axis], axis));
     }
@@ -356,15 +392,13 @@ class Report {
     if (rule.envelope.possible != rule.envelope.always) {
       text += " (possible " + to_string(rule.envelope.possible) + ")";
     }
-    return text + (rule.successor == kSuccessorDone
-                       ? "; done"
-                       : format("; to step %d", static_cast<int>(rule.successor)));
+    return text;
   }
 
   [[nodiscard]] std::string table() const {
     std::string html =
         "<table><tr><th>Step</th><th>Displacement</th><th>Slow from (mm)</th>"
-        "<th>Outcome</th><th>Expected travel (mm, deg), contacts, next</th></tr>\n";
+        "<th>Outcome</th><th>Expected travel (mm, deg) and contacts</th><th>Next</th></tr>\n";
     for (std::size_t i = 0; i < plan_.steps.size(); ++i) {
       bool first = true;
       for (const Outcome outcome : kOutcomes) {
@@ -373,11 +407,15 @@ class Report {
         html += first ? format("<tr><td>%zu</td><td>%s</td><td class='num'>%.0f</td>", i,
                                displacement_text(i).c_str(), 1e3 * plan_.steps[i].slow_from_m)
                       : "<tr><td></td><td></td><td></td>";
-        html += format("<td>%s</td><td>", to_string(outcome)) + rule_text(rule) + "</td></tr>\n";
+        html += format("<td>%s</td><td>", to_string(outcome)) + envelope_text(rule) + "</td><td>" +
+                (rule.successor == kSuccessorDone ? std::string("done")
+                                                  : std::to_string(rule.successor)) +
+                "</td></tr>\n";
         first = false;
       }
     }
-    return html + "</table>\n<p>Any other outcome, travel or contact stops the execution.</p>\n";
+    return html + "</table>\n<p>Any other outcome" +
+           (plan_.check_envelopes ? ", travel or contact" : "") + " stops the execution.</p>\n";
   }
 
   const Plan& plan_;
@@ -385,8 +423,7 @@ class Report {
   const std::vector<Chain>& chains_;
   bool certified_;
   const Validation& validation_;
-  std::vector<Node> nodes_;
-  Canvas canvas_;
+  std::vector<Node> nodes_;  // empty where no chain went through
 };
 
 }  // namespace

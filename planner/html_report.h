@@ -1,5 +1,6 @@
 #pragma once
-// A plan on one page: seen from above, its uncertainty step by step, and every step in words.
+// A plan on one page: why it works, its paths seen from where they can be seen, its uncertainty
+// step by step, and every step in a picture and in words.
 
 #include <string>
 
@@ -12,7 +13,7 @@ namespace tenon::planner {
 
 /// One self-contained HTML document with inline SVG.
 /// @param certification of this plan; its first run gives the particles' paths
-/// @param validation a few draws, drawn faintly
+/// @param validation drawn faintly; of a baseline also the uncertainty, which it does not know
 [[nodiscard]] std::string html_report(const Plan& plan, const Task& task,
                                       const Certification& certification,
                                       const Validation& validation);

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "planner/summary.h"
 #include "planner/text.h"
 
 namespace tenon::planner {
@@ -10,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string axis_names(CoordinateMask mask) {
-  static std::string names;
+  std::string names;
   for (int axis = 0; axis < 6; ++axis) {
     if ((mask >> axis & 1U) != 0)
       names += (names.empty() ? "" : " ") + std::string(axis_name(axis));
@@ -76,8 +77,10 @@ Json json_of(const ParameterSet& set) {
 std::string header_text(const Plan& plan, std::size_t bytes) {
   const Compliance& c = plan.compliance;
   std::string text;
-  text += format("task %s (hash %016llx), start %s\n", plan.task_name.c_str(),
-                 static_cast<unsigned long long>(plan.task_hash), plan.start_name.c_str());
+  text += format("task %s (hash %016llx), start %s, method %s%s\n", plan.task_name.c_str(),
+                 static_cast<unsigned long long>(plan.task_hash), plan.start_name.c_str(),
+                 to_string(plan.method),
+                 plan.check_envelopes ? "" : "; no envelopes are checked in execution");
   text +=
       format("%zu bytes, %zu steps, %zu parameter sets, coordinates %s\n", bytes, plan.steps.size(),
              plan.parameter_sets.size(), axis_names(plan.coordinates).c_str());
@@ -90,12 +93,7 @@ std::string header_text(const Plan& plan, std::size_t bytes) {
                  plan.force_limit_N);
   text += format("made for contact stiffness %g N/m, latency up to %.1f ms\n",
                  plan.contact_stiffness_Npm, 1e3 * plan.latency_max_s);
-  if (plan.bound > 0.0) {
-    text += format("cost %.0f, at most %.2f times the optimum of the searched graph\n", plan.cost,
-                   plan.bound);
-  } else {
-    text += format("cost %.0f, no bound proven\n", plan.cost);
-  }
+  text += cost_text(plan);
   return text +
          format("validation: %u of %u draws ended at the goal\n", plan.draws_at_goal, plan.draws);
 }
@@ -106,6 +104,7 @@ std::string plan_json(const Plan& plan, std::size_t bytes) {
   json["task"] = plan.task_name;
   json["task_hash"] = format("%016llx", static_cast<unsigned long long>(plan.task_hash));
   json["start_name"] = plan.start_name;
+  json["method"] = to_string(plan.method);
   json["bytes"] = bytes;
   json["coordinates"] = axis_names(plan.coordinates);
   json["start"] = json_of(plan.start);

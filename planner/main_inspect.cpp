@@ -21,7 +21,8 @@ namespace {
 
 using namespace tenon;
 
-constexpr std::size_t kReportDraws = 60;
+constexpr std::size_t kReportDraws = 200;
+constexpr std::size_t kDrawsMax = 100'000;  // as tenon-plan has it
 
 struct Arguments {
   std::string plan;
@@ -46,7 +47,8 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--report", a.report, "HTML file: the plan seen from above, and why it works")
       ->needs(task);
   app.add_option("--recertify", a.recertify,
-                 "Task file: simulate the plan's whole chain again; exit status 1 if it fails");
+                 "Task file: simulate the plan's whole chain and its validation again; exit status "
+                 "1 if they are not what the plan says");
   app.add_option("--cell", a.cell, "Cell file that the plan was made with");
   app.add_option("--threads", a.threads, "Threads of the simulation")
       ->check(CLI::Range(1, 256))
@@ -72,15 +74,31 @@ Task task_of(const Plan& plan, const std::string& file, const std::string& cell_
   return planner::fit_to_cell(task, load_cell(cell_file)).task;
 }
 
+// The draws that the planner made, again. Their seed is always the same.
+bool validates(std::FILE* out, const Plan& plan, const Task& task, planner::RolloutPool& pool) {
+  planner::ValidationParameters parameters;
+  parameters.draws = plan.draws;
+  const planner::Validation validation =
+      planner::validate(plan, task, planner::start_of(plan, task), parameters, pool);
+  const bool same = validation.at_goal() == plan.draws_at_goal;
+  std::fprintf(out, "validated: %s%s\n", same ? "yes, " : "NO, ",
+               planner::estimate_text(validation, task).c_str());
+  return same;
+}
+
 bool recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
+  if (plan.draws > kDrawsMax) {
+    throw InputError(a.plan + ": draws = " + std::to_string(plan.draws) + ", must be at most " +
+                     std::to_string(kDrawsMax) + " to be repeated");
+  }
   const Task task = task_of(plan, a.recertify, a.cell);
   planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
   const planner::Certification certification = planner::certify(bytes, task, pool);
   std::FILE* out = a.json == "-" ? stderr : stdout;
   for (const planner::VariantRun& run : certification.runs) {
     if (run.holds) {
-      std::fprintf(out, "certified: yes, %s, %zu particles\n", run.variant.name.c_str(),
-                   run.chains.size());
+      std::fprintf(out, "certified: yes, %s, %zu particle%s\n", run.variant.name.c_str(),
+                   run.chains.size(), run.chains.size() == 1 ? "" : "s");
     } else {
       std::fprintf(out, "certified: NO, %s: step %zu, particle %zu: %s\n", run.variant.name.c_str(),
                    run.disagreement.step, run.disagreement.particle, run.disagreement.why.c_str());
@@ -96,7 +114,8 @@ bool recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint
     std::fprintf(out, "certified: NO, the plan was made from another version of %s\n",
                  a.recertify.c_str());
   }
-  return certification.holds() && same_cost && same_task;
+  const bool valid = validates(out, plan, task, pool);
+  return certification.holds() && same_cost && same_task && valid;
 }
 
 void write_report(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {

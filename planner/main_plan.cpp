@@ -1,6 +1,7 @@
 // tenon-plan: a task file in, a certified plan out.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <optional>
@@ -24,7 +25,7 @@ struct Arguments {
   std::string task;
   std::string start;
   std::string cell;
-  std::string method = "mha";
+  std::string method = to_string(PlanMethod::kMha);
   std::string output;
   std::string json;
   std::size_t threads = 1;
@@ -38,8 +39,11 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("task", a.task, "Task file")->required();
   app.add_option("--start", a.start, "Name of the start to plan from (the task's first)");
   app.add_option("--cell", a.cell, "Cell file: plan with what its arm and contact stiffness allow");
-  app.add_option("--method", a.method, "Planner")
-      ->check(CLI::IsMember({"mha"}))
+  std::vector<std::string> methods;
+  methods.reserve(kPlanMethods.size());
+  for (const PlanMethod method : kPlanMethods) methods.emplace_back(to_string(method));
+  app.add_option("--method", a.method, "Planner; all but mha are baselines with one particle")
+      ->check(CLI::IsMember(methods))
       ->capture_default_str();
   app.add_option("--threads", a.threads, "Threads; the plan does not depend on it")
       ->check(CLI::Range(1, 256))
@@ -50,6 +54,12 @@ void describe(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_option("-o,--output", a.output, "Plan file to write")->required();
   app.add_option("--json", a.json, "File for the statistics, - for standard output");
+}
+
+PlanMethod chosen_method(const std::string& name) {
+  const auto* found = std::find_if(kPlanMethods.begin(), kPlanMethods.end(),
+                                   [&](PlanMethod method) { return name == to_string(method); });
+  return *found;  // the command line lets no other through
 }
 
 const Start& chosen_start(const Task& task, const std::string& name) {
@@ -75,6 +85,7 @@ int run(const Arguments& a) {
   if (!a.json.empty() && a.json != "-") check_writable(a.json);
 
   planner::PlannerOptions options;
+  options.method = chosen_method(a.method);
   options.threads = a.threads;
   options.validation.draws = a.draws;
   options.assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
@@ -97,9 +108,9 @@ int run(const Arguments& a) {
   report.adapted = std::move(adapted);
 
   if (a.json == "-") {
-    std::fputs(planner::statistics_json(report).c_str(), stdout);
+    std::fputs(planner::statistics_json(report, task).c_str(), stdout);
   } else if (!a.json.empty()) {
-    write_file(a.json, planner::statistics_json(report));
+    write_file(a.json, planner::statistics_json(report, task));
   }
   if (report.status != planner::PlanStatus::kPlanned) {
     std::fprintf(stderr, "tenon-plan: no plan from start '%s': %s: %s\n", start.name.c_str(),

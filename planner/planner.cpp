@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "planner/belief_graph.h"
+#include "planner/contact_greedy.h"
 #include "planner/envelopes.h"
 #include "planner/text.h"
 #include "shared/base/error.h"
@@ -72,9 +73,10 @@ class Planning {
                    task.rollout_step_us) {}
 
   PlanReport run() {
+    report_.method = options_.method;
     const std::string collision = start_collision(task_, start_, pool_.front());
     if (!collision.empty()) return finish(PlanStatus::kStartInCollision, collision);
-    Belief belief = cross_polytope(task_, start_);
+    Belief belief = start_belief(task_, start_, options_.method);
     for (Particle& particle : belief.particles) {
       particle.physics.contact_stiffness_Npm = options_.assumptions.contact_stiffness_Npm;
     }
@@ -82,11 +84,12 @@ class Planning {
       return finish(PlanStatus::kAlreadyAtGoal,
                     "start '" + start_.name + "' is already within the goal's tolerances");
     }
-    std::vector<Guide> guides = timed(now_s_, report_.times.attractors_s, [&] {
-      return find_guides(task_, belief, long_succ_, pool_.front());
+    Attractors attractors = timed(now_s_, report_.times.attractors_s, [&] {
+      return find_attractors(task_, belief, long_succ_, pool_.front());
     });
-    report_.attractors = guides.size();
-    BeliefGraph graph(task_, belief, std::move(guides), succ_);
+    if (is_baseline()) attractors.guides.clear();
+    report_.attractors = attractors.guides.size();
+    BeliefGraph graph(task_, belief, std::move(attractors), succ_);
     for (std::size_t round = 0; round < options_.rounds_max; ++round) {
       if (!search(graph)) return report_with_counters(graph);
       if (try_path(graph)) return report_with_counters(graph);
@@ -99,6 +102,9 @@ class Planning {
 
  private:
   [[nodiscard]] bool out_of_time() const { return now_s_() - began_s_ > task_.time_limit_s; }
+
+  /// Such a planner has nothing but its one particle.
+  [[nodiscard]] bool is_baseline() const { return options_.method != PlanMethod::kMha; }
 
   PlanReport& finish(PlanStatus status, const std::string& reason) {
     report_.status = status;
@@ -116,8 +122,11 @@ class Planning {
   /// False where there is no path; the report says why.
   bool search(BeliefGraph& graph) {
     report_.search = timed(now_s_, report_.times.search_s, [&] {
-      return mha_search(graph, {task_.w1, task_.w2, options_.expansions_max},
-                        [&] { return out_of_time(); });
+      const SearchParameters parameters{task_.w1, task_.w2, options_.expansions_max};
+      const auto stop = [&] { return out_of_time(); };
+      return options_.method == PlanMethod::kContactGreedy
+                 ? contact_greedy_search(graph, parameters, stop)
+                 : mha_search(graph, parameters, stop);
     });
     report_.expansions += report_.search.expanded.size();
     if (report_.search.has_path) return true;
@@ -128,7 +137,7 @@ class Planning {
       finish(late ? PlanStatus::kTimeLimit : PlanStatus::kExpansionLimit,
              late ? format("no path within %g s, after ", task_.time_limit_s) + after
                   : "no path after " + after + ", the limit");
-    } else if (report_.attractors == 0) {
+    } else if (report_.attractors == 0 && !is_baseline()) {
       finish(PlanStatus::kNoAttractor,
              "no push from the start reduces its uncertainty, and no path exists after " + after);
     } else {
@@ -143,12 +152,18 @@ class Planning {
     for (const PathEdge& edge : report_.search.path) {
       displacements.push_back(graph.displacement(edge.from, edge.label));
     }
-    const Plan slow = draft_plan(task_, start_, options_.assumptions, displacements);
-    const Certification at_contact_speed = certified(slow);
+    Plan slow = draft_plan(task_, start_, options_.assumptions, displacements);
+    slow.method = options_.method;
+    Certification at_contact_speed = certified(slow);
     if (const VariantRun* refuting = at_contact_speed.refuting()) {
       refuse(graph, refuting->disagreement.step,
              refuting->variant.name + ", " + refuting->disagreement.why);
       return false;
+    }
+    if (is_baseline()) {
+      Validation validation = validated(slow);
+      complete(graph, slow, std::move(at_contact_speed), std::move(validation));
+      return true;
     }
     std::vector<double> distances_m =
         slow_from(slow, good_chains(at_contact_speed, {}), task_.particle_sigmas);
@@ -177,7 +192,9 @@ class Planning {
       return false;
     }
     if (shorten(plan, validation, distances_m)) return false;
-    complete(graph, plan, std::move(certification), std::move(validation));
+    const std::vector<Chain> good = good_chains(certification, validation);
+    complete(graph, with_envelopes(plan, task_, good), std::move(certification),
+             std::move(validation));
     return true;
   }
 
@@ -203,9 +220,11 @@ class Planning {
 
   Validation validated(const Plan& plan) {
     Validation result = timed(now_s_, report_.times.validation_s, [&] {
-      return validate(plan, task_, start_, options_.validation, pool_);
+      ValidationParameters parameters = options_.validation;
+      parameters.stop_when_refuted = !is_baseline();
+      return validate(plan, task_, start_, parameters, pool_);
     });
-    for (const Draw& draw : result.draws) report_.validation_moves += draw.chain.steps.size();
+    report_.validation_moves += result.moves();
     return result;
   }
 
@@ -216,9 +235,8 @@ class Planning {
     for (const VariantRun& run : certification.runs) {
       chains.insert(chains.end(), run.chains.begin(), run.chains.end());
     }
-    for (const Draw& draw : validation.draws) {
-      if (draw.at_goal) chains.push_back(draw.chain);
-    }
+    const std::vector<Chain> validated = validation.good_chains();
+    chains.insert(chains.end(), validated.begin(), validated.end());
     return chains;
   }
 
@@ -238,12 +256,8 @@ class Planning {
   /// True where a draw met a contact before the tool was slow; the distance is then shortened.
   static bool shorten(const Plan& plan, const Validation& validation,
                       std::vector<double>& distances_m) {
-    std::vector<Chain> chains;
-    for (const Draw& draw : validation.draws) {
-      if (draw.at_goal) chains.push_back(draw.chain);
-    }
     const std::vector<double> allowed_m =
-        slow_from(plan, chains, std::numeric_limits<double>::infinity());
+        slow_from(plan, validation.good_chains(), std::numeric_limits<double>::infinity());
     bool shortened = false;
     for (std::size_t i = 0; i < distances_m.size(); ++i) {
       // slow_from() keeps its margin; half of it is enough for what was only drawn.
@@ -260,9 +274,8 @@ class Planning {
     report_.refusals.push_back(format("step %zu: ", step) + why);
   }
 
-  void complete(const BeliefGraph& graph, const Plan& draft, Certification certification,
+  void complete(const BeliefGraph& graph, Plan plan, Certification certification,
                 Validation validation) {
-    Plan plan = with_envelopes(draft, task_, good_chains(certification, validation));
     plan.cost = certification.cost;
     // The bound speaks of the searched graph; the chain's own cost may differ a little from g.
     const double bound = report_.search.bound * certification.cost / report_.search.cost;

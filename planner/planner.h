@@ -30,6 +30,9 @@ enum class PlanStatus : std::uint8_t {
 [[nodiscard]] const char* to_string(PlanStatus status);
 
 struct PlannerOptions {
+  /// A baseline plans and certifies its single particle alone. Its plan runs at contact speed
+  /// throughout, checks no envelope, and is validated as any other but never refused for it.
+  PlanMethod method = PlanMethod::kMha;
   std::size_t threads = 1;
   CellAssumptions assumptions;
   ValidationParameters validation;
@@ -46,6 +49,7 @@ struct PlannerTimes {
 };
 
 struct PlanReport {
+  PlanMethod method = PlanMethod::kMha;
   PlanStatus status = PlanStatus::kExhausted;
   std::string reason;  ///< one line where it is not kPlanned
   std::optional<Plan> plan;

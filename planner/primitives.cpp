@@ -36,14 +36,15 @@ std::vector<Primitive> long_primitives(const Task& task) {
   return both_ways(task, task.long_step_m, 0.0);
 }
 
-std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean) {
-  Vector6 displacement = displacement_between(mean, task.goal);
+std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean, const Pose& place,
+                                          int label) {
+  Vector6 displacement = displacement_between(mean, place);
   for (int axis = 0; axis < 6; ++axis) {
     if (!searched(task, axis)) displacement[axis] = 0.0;
   }
   if (displacement.head<3>().norm() > task.direct_reach_m) return std::nullopt;
   if (displacement.cwiseAbs().maxCoeff() < kNoMove) return std::nullopt;
-  return Primitive{kDirectLabel, stored(displacement)};
+  return Primitive{label, stored(displacement)};
 }
 
 }  // namespace tenon::planner

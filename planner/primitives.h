@@ -11,7 +11,7 @@
 namespace tenon::planner {
 
 struct Primitive {
-  int label = 0;  ///< 2a: + along axis a, 2a + 1: -; kDirectLabel: straight to the goal
+  int label = 0;  ///< 2a: + along axis a, 2a + 1: -; kDirectLabel + i: straight to goal attractor i
   Vector6 displacement = Vector6::Zero();
 };
 
@@ -23,9 +23,11 @@ inline constexpr int kDirectLabel = 12;
 /// + and - one long step along every translation of the search, for the attractor search.
 [[nodiscard]] std::vector<Primitive> long_primitives(const Task& task);
 
-/// From the belief's mean straight to the goal, in the search's coordinates. A lattice cannot land
-/// on an arbitrary goal; this can. Empty where the goal is beyond direct_reach_m, or already met.
-[[nodiscard]] std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean);
+/// From the belief's mean straight to a place, in the search's coordinates. A lattice cannot land
+/// on an arbitrary goal; this can. Empty where the place is beyond direct_reach_m, or already met.
+[[nodiscard]] std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean,
+                                                        const Pose& place,
+                                                        int label = kDirectLabel);
 
 /// The value that comes back after storing it as a 32-bit float.
 [[nodiscard]] Vector6 stored(const Vector6& value);

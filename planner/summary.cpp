@@ -1,6 +1,7 @@
 #include "planner/summary.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "planner/text.h"
@@ -18,23 +19,44 @@ std::string displacement_text(const Plan& plan, const Vector6& displacement) {
   return text.empty() ? "none" : text;
 }
 
-std::string rule_text(const Plan& plan, Outcome outcome, const OutcomeRule& rule) {
-  std::string text = format("       %-8s", to_string(outcome));
-  if (plan.check_envelopes) {
-    for (int axis = 0; axis < 6; ++axis) {
-      if ((plan.coordinates >> axis & 1U) == 0) continue;
-      text += format(" %s [%.1f, %.1f]", axis_name(axis),
-                     shown(rule.envelope.travelled_min[axis], axis),
-                     shown(rule.envelope.travelled_max[axis], axis));
-    }
-    text += "  contacts " + to_string(rule.envelope.always);
-    const ContactSignature sometimes{
-        static_cast<std::uint16_t>(rule.envelope.possible.bits & ~rule.envelope.always.bits)};
-    if (sometimes.count() > 0) text += ", perhaps " + to_string(sometimes);
+std::string successor_text(Successor successor) {
+  return successor == kSuccessorDone ? " -> done\n"
+                                     : format(" -> %d\n", static_cast<int>(successor));
+}
+
+std::string envelope_text(const Plan& plan, const Envelope& envelope) {
+  std::string text;
+  for (int axis = 0; axis < 6; ++axis) {
+    if ((plan.coordinates >> axis & 1U) == 0) continue;
+    text += format(" %s [%.1f, %.1f]", axis_name(axis), shown(envelope.travelled_min[axis], axis),
+                   shown(envelope.travelled_max[axis], axis));
   }
-  return text + (rule.successor == kSuccessorDone
-                     ? "  -> done\n"
-                     : format("  -> %d\n", static_cast<int>(rule.successor)));
+  text += "  contacts " + to_string(envelope.always);
+  const ContactSignature sometimes{
+      static_cast<std::uint16_t>(envelope.possible.bits & ~envelope.always.bits)};
+  if (sometimes.count() > 0) text += ", perhaps " + to_string(sometimes);
+  return text;
+}
+
+/// A line for each outcome that leads on; without envelopes, one for all that lead to one step.
+std::string rules_text(const Plan& plan, const Step& step) {
+  std::string text;
+  std::map<Successor, std::string> names_to;
+  for (const Outcome outcome : kOutcomes) {
+    const OutcomeRule& rule = step.rule(outcome);
+    if (rule.successor == kSuccessorFail) continue;
+    if (plan.check_envelopes) {
+      text += format("       %-8s", to_string(outcome)) + envelope_text(plan, rule.envelope) + " " +
+              successor_text(rule.successor);
+    } else {
+      std::string& names = names_to[rule.successor];
+      names += (names.empty() ? "" : ", ") + std::string(to_string(outcome));
+    }
+  }
+  for (const auto& [successor, names] : names_to) {
+    text += "       " + names + successor_text(successor);
+  }
+  return text;
 }
 
 double peak_force_N(const PlanReport& report) {
@@ -49,16 +71,27 @@ double peak_force_N(const PlanReport& report) {
 
 }  // namespace
 
+std::string cost_text(const Plan& plan) {
+  return format("cost %.0f, ", plan.cost) +
+         (plan.bound > 0.0
+              ? format("at most %.2f times the optimum of the searched graph\n", plan.bound)
+              : "no bound proven\n");
+}
+
+std::string estimate_text(const Validation& validation, const Task& task) {
+  return format("%zu of %zu draws end at the goal (%zu of %zu within %g sigma)",
+                validation.at_goal(), validation.draws.size(),
+                validation.at_goal_within(task.particle_sigmas),
+                validation.within(task.particle_sigmas), task.particle_sigmas);
+}
+
 std::string step_table(const Plan& plan) {
   std::string text = "step   displacement (mm, deg)    slow from (mm)\n";
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     const Step& step = plan.steps[i];
     text += format("%4zu   %-25s %8.1f\n", i, displacement_text(plan, step.displacement).c_str(),
                    1e3 * step.slow_from_m);
-    for (const Outcome outcome : kOutcomes) {
-      const OutcomeRule& rule = step.rule(outcome);
-      if (rule.successor != kSuccessorFail) text += rule_text(plan, outcome, rule);
-    }
+    text += rules_text(plan, step);
   }
   return text;
 }
@@ -66,16 +99,14 @@ std::string step_table(const Plan& plan) {
 std::string summary(const PlanReport& report, const Task& task, const std::string& file) {
   const Plan& plan = *report.plan;
   const PlannerTimes& t = report.times;
-  const Validation& v = report.validation;
   const auto moves = [](const SuccessorEngine::Counters& c) {
     return static_cast<unsigned long long>(c.rollouts);
   };
   std::string text;
-  text +=
-      format("%s: start %s of %s, %zu steps, %zu bytes\n", file.c_str(), plan.start_name.c_str(),
-             plan.task_name.c_str(), plan.steps.size(), report.bytes.size());
-  text += format("cost %.0f, at most %.2f times the optimum of the searched graph\n", plan.cost,
-                 plan.bound);
+  text += format("%s: start %s of %s, method %s, %zu steps, %zu bytes\n", file.c_str(),
+                 plan.start_name.c_str(), plan.task_name.c_str(), to_string(plan.method),
+                 plan.steps.size(), report.bytes.size());
+  text += cost_text(plan);
   text += format("search: %zu expansions, %zu states, %zu attractors, %zu refuted edges\n",
                  report.expansions, report.states, report.attractors, report.refusals.size());
   text += format(
@@ -88,17 +119,14 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
   text +=
       format("time: %.2f s attractors, %.2f s search, %.2f s certification, %.2f s validation\n",
              t.attractors_s, t.search_s, t.certification_s, t.validation_s);
-  text += format(
-      "validation: %zu of %zu draws end at the goal (%zu of %zu within %g sigma), "
-      "peak force %.0f N\n",
-      v.at_goal(), v.draws.size(), v.at_goal_within(task.particle_sigmas),
-      v.within(task.particle_sigmas), task.particle_sigmas, peak_force_N(report));
+  text += "validation: " + estimate_text(report.validation, task) +
+          format(", peak force %.0f N\n", peak_force_N(report));
   for (const std::string& change : report.adapted) text += "for the cell: " + change + "\n";
   for (const std::string& refusal : report.refusals) text += "refuted: " + refusal + "\n";
   return text + step_table(plan);
 }
 
-std::string statistics_json(const PlanReport& report) {
+std::string statistics_json(const PlanReport& report, const Task& task) {
   const auto moves = [](const SuccessorEngine::Counters& c) {
     return nlohmann::ordered_json{
         {"simulated", c.rollouts}, {"memo_hits", c.memo_hits}, {"failures", c.failures}};
@@ -106,6 +134,7 @@ std::string statistics_json(const PlanReport& report) {
   nlohmann::ordered_json json;
   json["status"] = to_string(report.status);
   json["reason"] = report.reason;
+  json["method"] = to_string(report.method);
   json["attractors"] = report.attractors;
   json["states"] = report.states;
   json["expansions"] = report.expansions;
@@ -127,6 +156,9 @@ std::string statistics_json(const PlanReport& report) {
     json["bound"] = report.plan->bound;
     json["draws"] = report.plan->draws;
     json["draws_at_goal"] = report.plan->draws_at_goal;
+    json["particle_sigmas"] = task.particle_sigmas;
+    json["draws_within_particles"] = report.validation.within(task.particle_sigmas);
+    json["draws_within_particles_at_goal"] = report.validation.at_goal_within(task.particle_sigmas);
     json["peak_force_N"] = peak_force_N(report);
   }
   return json.dump(2) + "\n";

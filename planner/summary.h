@@ -8,6 +8,13 @@
 
 namespace tenon::planner {
 
+/// "cost 8250, at most 2.04 times the optimum of the searched graph".
+[[nodiscard]] std::string cost_text(const Plan& plan);
+
+/// The plan's own estimate of its success: "190 of 200 draws end at the goal (176 of 176 within 2
+/// sigma)".
+[[nodiscard]] std::string estimate_text(const Validation& validation, const Task& task);
+
 /// A table with a line for each step: displacement, speeds, outcomes with envelopes, successors.
 [[nodiscard]] std::string step_table(const Plan& plan);
 
@@ -16,6 +23,6 @@ namespace tenon::planner {
                                   const std::string& file);
 
 /// Keys are documented in planner/README.md.
-[[nodiscard]] std::string statistics_json(const PlanReport& report);
+[[nodiscard]] std::string statistics_json(const PlanReport& report, const Task& task);
 
 }  // namespace tenon::planner

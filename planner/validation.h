@@ -21,20 +21,31 @@ struct Draw {
 
 struct Validation {
   std::vector<Draw> draws;
+  /// Starts where drawing ends: along every uncertain coordinate both ways and to every corner
+  /// between them, at both extremes of friction. Nobody drew them, so no statistic counts them;
+  /// they show how far the plan's steps travel from starts that are hardly ever drawn.
+  std::vector<Draw> rim;
 
   [[nodiscard]] std::size_t at_goal() const;
   /// Those within `sigmas` standard deviations, and how many of them ended at the goal.
   [[nodiscard]] std::size_t within(double sigmas) const;
   [[nodiscard]] std::size_t at_goal_within(double sigmas) const;
+
+  /// Those that ended at the goal, the rim's too.
+  [[nodiscard]] std::vector<Chain> good_chains() const;
+  /// Guarded moves that were simulated for all of it.
+  [[nodiscard]] std::size_t moves() const;
 };
 
 struct ValidationParameters {
   std::size_t draws = 200;
   std::uint64_t seed = 1;
+  /// Stop soon after a draw within the particles' reach that misses the goal: enough to refuse.
+  bool stop_when_refuted = false;
 };
 
 /// Normal starts out to c_p + 1 standard deviations (farther ones, and those in collision, are
-/// drawn again), friction even over the task's range.
+/// drawn again), friction even over the task's range. On the rim, starts in collision are left out.
 [[nodiscard]] Validation validate(const Plan& plan, const Task& task, const Start& start,
                                   const ValidationParameters& parameters, RolloutPool& pool);
 

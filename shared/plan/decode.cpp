@@ -155,8 +155,9 @@ struct Counts {
 Counts read_header(FieldReader& in, Plan& plan) {
   (void)in.raw<std::uint32_t>("magic");
   (void)in.raw<std::uint16_t>("version");
-  const auto flags = in.whole<std::uint8_t>("flags", 0, kFlagCheckEnvelopes);
+  const auto flags = in.whole<std::uint8_t>("flags", 0, kFlagsMax);
   plan.check_envelopes = (flags & kFlagCheckEnvelopes) != 0;
+  plan.method = static_cast<PlanMethod>(flags >> kMethodShift);
   plan.coordinates = in.whole<std::uint8_t>("coordinates", 1, 0x3F);
   (void)in.raw<std::uint32_t>("length");
   plan.task_hash = in.raw<std::uint64_t>("task_hash");

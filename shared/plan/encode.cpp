@@ -33,10 +33,15 @@ void write_text(ByteWriter& out, const std::string& text) {
   for (const char letter : text) out.write(static_cast<std::uint8_t>(letter));
 }
 
+std::uint8_t flags_of(const Plan& plan) {
+  const unsigned method = static_cast<unsigned>(plan.method) << kMethodShift;
+  return static_cast<std::uint8_t>(method | (plan.check_envelopes ? kFlagCheckEnvelopes : 0U));
+}
+
 void write_header(ByteWriter& out, const Plan& plan, std::size_t length) {
   out.write(kMagic);
   out.write(kVersion);
-  out.write(plan.check_envelopes ? kFlagCheckEnvelopes : std::uint8_t{0});
+  out.write(flags_of(plan));
   out.write(plan.coordinates);
   out.write(static_cast<std::uint32_t>(length));
   out.write(plan.task_hash);

@@ -2,6 +2,18 @@
 
 namespace tenon {
 
+const char* to_string(PlanMethod method) {
+  switch (method) {
+    case PlanMethod::kMha:
+      return "mha";
+    case PlanMethod::kSingleParticle:
+      return "single-particle";
+    case PlanMethod::kContactGreedy:
+      return "contact-greedy";
+  }
+  return "?";
+}
+
 MoveParameters move_parameters(const Plan& plan, std::size_t step) {
   const Step& s = plan.steps[step];
   const ParameterSet& set = plan.parameter_sets[s.parameter_set];

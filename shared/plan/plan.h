@@ -22,6 +22,17 @@ inline constexpr Successor kSuccessorDone = 0xFE;
 inline constexpr Successor kSuccessorFail = 0xFF;
 inline constexpr std::size_t kMaxSteps = 200;
 
+/// Which planner made a plan, and thereby what it was certified for.
+enum class PlanMethod : std::uint8_t {
+  kMha = 0,             ///< search over beliefs: every particle
+  kSingleParticle = 1,  ///< baseline: the nominal start alone
+  kContactGreedy = 2,   ///< baseline: the same, by way of the nearest contact
+};
+inline constexpr std::array kPlanMethods = {PlanMethod::kMha, PlanMethod::kSingleParticle,
+                                            PlanMethod::kContactGreedy};
+/// As on the command line: "mha", "single-particle", "contact-greedy".
+[[nodiscard]] const char* to_string(PlanMethod method);
+
 /// What validation saw of an outcome, widened by sensor and latency margins.
 struct Envelope {
   Vector6 travelled_min = Vector6::Zero();  ///< m, rad; zero off the plan's coordinates
@@ -63,6 +74,7 @@ struct Plan {
   std::string task_name;   ///< at most 63 bytes
   std::string start_name;  ///< at most 63 bytes
   std::uint64_t task_hash = 0;
+  PlanMethod method = PlanMethod::kMha;
   CoordinateMask coordinates = 0;
   Pose start;  ///< nominal, tool in task frame
   Pose goal;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tests/planner/room_task.h"
@@ -64,6 +65,40 @@ TEST(Belief, GeodesicMeanDoesNotDependOnTheFrame) {
   for (Particle& p : seen.particles) p.pose.orientation = turn * p.pose.orientation;
   EXPECT_NEAR(mean_pose(seen).orientation.angularDistance(turn * mean_pose(belief).orientation),
               0.0, 1e-12);
+}
+
+TEST(Belief, GeodesicMeanOfTwoIsHalfTheTurnBetweenThem) {
+  const Eigen::Quaterniond base = rotation_of({0.7, -0.4, 0.2});
+  const Vector3 turn_rad(0.3, 0.5, -0.8);
+  Belief belief{{at(0, 0), at(0, 0)}};
+  belief.particles[0].pose.orientation = base;
+  belief.particles[1].pose.orientation = rotation_of(turn_rad) * base;
+  const Eigen::Quaterniond half = rotation_of(0.5 * turn_rad) * base;
+  EXPECT_NEAR(mean_pose(belief).orientation.angularDistance(half), 0.0, 1e-9);
+  // Each stands half the turn off: the trace of their covariance is its square.
+  EXPECT_NEAR(uncertainty(belief, {1.0, 1.0}), 0.25 * turn_rad.squaredNorm(), 1e-9);
+}
+
+TEST(Belief, TurnsAboutOneAxisHaveTheMeanAndVarianceOfTheirAngles) {
+  const Vector3 axis = Vector3(1.0, 2.0, -2.0) / 3.0;
+  const Belief belief{{at(0, 0, 0.1 * axis), at(0, 0, 0.3 * axis), at(0, 0, 0.8 * axis)}};
+  EXPECT_NEAR(mean_pose(belief).orientation.angularDistance(rotation_of(0.4 * axis)), 0.0, 1e-9);
+  EXPECT_NEAR(uncertainty(belief, {1.0, 1.0}), (0.09 + 0.01 + 0.16) / 3.0, 1e-9);
+}
+
+TEST(Belief, DistanceIsAMetric) {
+  const Metric metric{2.0, 0.5};
+  const std::array poses = {at(0, 0).pose, at(0.3, -0.1, {0.4, 0.1, 0}).pose,
+                            at(-0.2, 0.5, {-1.2, 0.5, 2.3}).pose, at(0, 0.1, {0, 0, 3.1}).pose};
+  for (const Pose& a : poses) {
+    EXPECT_NEAR(distance(a, a, metric), 0.0, 1e-7);
+    for (const Pose& b : poses) {
+      EXPECT_NEAR(distance(a, b, metric), distance(b, a, metric), 1e-12);
+      for (const Pose& c : poses) {
+        EXPECT_LE(distance(a, c, metric), distance(a, b, metric) + distance(b, c, metric) + 1e-12);
+      }
+    }
+  }
 }
 
 TEST(Belief, DistanceAddsTranslationAndAngle) {

@@ -75,7 +75,7 @@ TEST_F(Room, PrimitivesAreValuesThatAFileHolds) {
     EXPECT_EQ(p.displacement, stored(p.displacement));
   Pose mean = task.goal;
   mean.position_m.x() -= 0.1 + 1.0 / 3.0 * 0.1;
-  const auto direct = direct_primitive(task, mean);
+  const auto direct = direct_primitive(task, mean, task.goal);
   ASSERT_TRUE(direct.has_value());
   EXPECT_EQ(direct->displacement.x(),
             static_cast<double>(static_cast<float>(0.1 + 1.0 / 3.0 * 0.1)));
@@ -84,13 +84,13 @@ TEST_F(Room, PrimitivesAreValuesThatAFileHolds) {
 TEST_F(Room, TheDirectMoveExistsWithinReachOnlyAndStaysInTheSearchedCoordinates) {
   Pose mean = task.goal;
   mean.position_m.x() += task.direct_reach_m + 1e-3;
-  EXPECT_FALSE(direct_primitive(task, mean).has_value());
+  EXPECT_FALSE(direct_primitive(task, mean, task.goal).has_value());
   mean.position_m.x() -= 2e-3;
   mean.position_m.z() += 0.5;
-  const auto direct = direct_primitive(task, mean);
+  const auto direct = direct_primitive(task, mean, task.goal);
   ASSERT_TRUE(direct.has_value());
   EXPECT_EQ(direct->displacement.z(), 0.0);
-  EXPECT_FALSE(direct_primitive(task, task.goal).has_value());
+  EXPECT_FALSE(direct_primitive(task, task.goal, task.goal).has_value());
 }
 
 TEST_F(Room, TheAnchorIsConsistentOnEveryGeneratedEdge) {
@@ -120,7 +120,7 @@ TEST_F(Room, ARefusedEdgeIsGone) {
 }
 
 TEST_F(Room, GuidesLeadToOneWallAfterTheOtherAndNoneStandsTwice) {
-  const std::vector<Guide> guides = find_guides(task, start, succ, pool.front());
+  const std::vector<Guide> guides = find_attractors(task, start, succ, pool.front()).guides;
   ASSERT_EQ(guides.size(), 2U);
   for (const Guide& guide : guides) {
     ASSERT_EQ(guide.contacts.size(), 2U);
@@ -144,7 +144,7 @@ TEST_F(Room, GuidesLeadToOneWallAfterTheOtherAndNoneStandsTwice) {
 TEST_F(Room, AGuideBeginsWithinReachOfTheAnchor) {
   // Beyond w2 times the anchor's key a guide is never asked.
   const BeliefSummary seed = summarise(start, task);
-  for (const Guide& guide : find_guides(task, start, succ, pool.front())) {
+  for (const Guide& guide : find_attractors(task, start, succ, pool.front()).guides) {
     EXPECT_LE(foliated_heuristic(seed, guide, task), task.w2 * anchor_heuristic(seed, task));
     EXPECT_GT(foliated_heuristic(seed, guide, task), anchor_heuristic(seed, task));
   }
@@ -153,7 +153,7 @@ TEST_F(Room, AGuideBeginsWithinReachOfTheAnchor) {
 TEST_F(Room, WithoutWallsThereIsNoAttractor) {
   RolloutPool empty(WallRollout(WallRollout::World{}), 1);
   SuccessorEngine engine(empty, MoveParameters{}, 2000);
-  EXPECT_TRUE(find_guides(task, start, engine, empty.front()).empty());
+  EXPECT_TRUE(find_attractors(task, start, engine, empty.front()).guides.empty());
 }
 
 TEST_F(Room, TheFoliatedHeuristicCountsTheContactsThatAreLeftAndThenTheWayToTheGoal) {

@@ -302,6 +302,34 @@ TEST(Report, IsOneDocumentWithoutOutsideResources) {
     EXPECT_EQ(html.find(outside), std::string::npos) << outside;
   }
   EXPECT_NE(html.find("the chain holds"), std::string::npos);
+  EXPECT_NE(html.find("Seen from above"), std::string::npos);
+  EXPECT_EQ(html.find("Seen from the side"), std::string::npos);
+}
+
+TEST(Report, SaysWhichContactSettlesEachDirection) {
+  Task task = room_task();
+  Shape wall;
+  wall.name = "low";  // the double's name for whatever is touched at a low coordinate
+  wall.size_m = Vector3::Constant(0.1);
+  wall.pose.position_m = {-0.6, 0.0, 0.0};
+  task.environment = {wall};
+  const PlanReport report = planned(task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  const std::string html = html_report(*report.plan, task, report.certification, report.validation);
+  EXPECT_NE(html.find("<li>x 42.4 mm &rarr; 0.0 mm: contact with "), std::string::npos);
+  EXPECT_NE(html.find("<li>y 42.4 mm &rarr; 0.0 mm: contact with "), std::string::npos);
+}
+
+TEST(Report, ShowsTheUncertaintyThatABaselineDoesNotKnow) {
+  const Task task = room_task();
+  PlannerOptions options;
+  options.method = PlanMethod::kSingleParticle;
+  const PlanReport report = planned(task, room(), options);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  const std::string html = html_report(*report.plan, task, report.certification, report.validation);
+  EXPECT_NE(html.find("baseline <b>single-particle</b>"), std::string::npos);
+  EXPECT_NE(html.find("Root of u of the random starts"), std::string::npos);
+  EXPECT_EQ(html.find("Why it works"), std::string::npos);
 }
 
 TEST(Report, TheStepTableNamesEveryStepAndItsEnd) {

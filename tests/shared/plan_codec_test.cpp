@@ -80,6 +80,20 @@ TEST(PlanCodec, EveryFieldComesBackAsTheValueOfItsFloat) {
   }
 }
 
+TEST(PlanCodec, EveryMethodComesBackBesideTheFlagForEnvelopes) {
+  for (const bool check_envelopes : {false, true}) {
+    for (const PlanMethod method : kPlanMethods) {
+      Plan plan = documented_plan();
+      plan.method = method;
+      plan.check_envelopes = check_envelopes;
+      const Bytes bytes = encode_plan(plan);
+      EXPECT_EQ(bytes[6], 2 * static_cast<int>(method) + (check_envelopes ? 1 : 0));
+      EXPECT_EQ(decoded(bytes).method, method);
+      EXPECT_EQ(decoded(bytes).check_envelopes, check_envelopes);
+    }
+  }
+}
+
 TEST(PlanCodec, AnEnvelopeOnlyGrows) {
   const Plan plan = long_plan(0b111111, 15, {Outcome::kContact});
   const Plan back = decoded(encode_plan(plan));
@@ -168,7 +182,8 @@ TEST(PlanCodec, EveryBadValueIsNamedWithItsFieldAndByte) {
   const Bytes zero = {0x00, 0x00, 0x00, 0x00};
   const Bytes hundred = {0x00, 0x00, 0xC8, 0x42};
   const std::vector<Mutation> mutations = {
-      {0x06, {0x02}, PlanError::kRange, "flags"},
+      {0x06, {0x06}, PlanError::kRange, "flags"},
+      {0x06, {0x09}, PlanError::kRange, "flags"},
       {0x07, {0x00}, PlanError::kRange, "coordinates"},
       {0x07, {0x40}, PlanError::kRange, "coordinates"},
       {0x14, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}, PlanError::kNotFinite, "start_position_m"},

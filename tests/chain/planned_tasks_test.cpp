@@ -1,0 +1,117 @@
+// The tasks that are shipped, planned on the real physics in every setting.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planner/planner.h"
+#include "shared/config/load.h"
+#include "shared/task/inserted.h"
+#include "sim/rollout/ode_rollout.h"
+
+namespace tenon::planner {
+namespace {
+
+constexpr std::size_t kDraws = 20;  // the executable takes 200 and more
+
+/// "box_on_table_2d.yaml", "box_on_table_2d.yaml#paper", ...
+std::vector<std::string> shipped_tasks() {
+  std::vector<std::string> all;
+  const std::filesystem::path folder = TENON_SOURCE_DIR "/planner/tasks";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string file = entry.path().filename();
+    all.push_back(file);
+    for (const std::string& variant : task_variants(entry.path())) {
+      all.push_back(file + "#" + variant);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return name;
+}
+
+PlanReport planned(const Task& task, const Start& start, std::size_t threads) {
+  PlannerOptions options;
+  options.threads = threads;
+  options.validation.draws = kDraws;
+  options.assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
+  return make_plan(task, start, sim::OdeRollout(task), options, [] { return 0.0; });
+}
+
+class PlannedTask : public testing::TestWithParam<std::string> {};
+
+TEST_P(PlannedTask, IsPlannedAndEveryParticleOfEveryVariantEndsInsertedAtTheGoal) {
+  const Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/" + GetParam());
+  const Start& start = task.starts.back();
+  const PlanReport report = planned(task, start, 2);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+  std::printf("%s from start %s: %zu steps, %zu bytes, %zu expansions\n", GetParam().c_str(),
+              start.name.c_str(), report.plan->steps.size(), report.bytes.size(),
+              report.expansions);
+  EXPECT_LE(report.bytes.size(), 2048U);
+  EXPECT_EQ(report.validation.at_goal_within(task.particle_sigmas),
+            report.validation.within(task.particle_sigmas));
+  EXPECT_EQ(report.certification.runs.size(), 4U);
+  for (const VariantRun& run : report.certification.runs) {
+    for (const Chain& chain : run.chains) {
+      const Vector3 off_m = chain.end().position_m - task.goal.position_m;
+      EXPECT_LE(off_m.norm(), task.goal_tolerance_m) << run.variant.name;
+      EXPECT_TRUE(inserted(task, chain.end())) << run.variant.name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tree, PlannedTask, testing::ValuesIn(shipped_tasks()), test_name);
+
+class PlannedTaskInThePlane : public testing::TestWithParam<const char*> {};
+
+TEST_P(PlannedTaskInThePlane, IsTheSamePlanByteForByteOnOneTwoAndFourThreads) {
+  const Task task = load_task(std::string(TENON_SOURCE_DIR "/planner/tasks/") + GetParam());
+  const PlanReport one = planned(task, task.starts.front(), 1);
+  ASSERT_EQ(one.status, PlanStatus::kPlanned) << one.reason;
+  for (const std::size_t threads : {2U, 4U}) {
+    EXPECT_EQ(planned(task, task.starts.front(), threads).bytes, one.bytes) << threads;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tree, PlannedTaskInThePlane,
+                         testing::Values("box_on_table_2d.yaml", "peg_in_hole_2d.yaml",
+                                         "peg_in_hole_2d_fine.yaml#clearance_0.5mm",
+                                         "toy_1d.yaml"));
+
+TEST(PlannedBox, EndsWithinTwoMillimetresWithOneOfSpreadFromEveryStart) {
+  const Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml");
+  for (const Start& start : task.starts) {
+    const PlanReport report = planned(task, start, 2);
+    ASSERT_EQ(report.status, PlanStatus::kPlanned) << start.name << ": " << report.reason;
+    double sum_m = 0.0;
+    double squares_m2 = 0.0;
+    for (const Draw& draw : report.validation.draws) {
+      const double off_m = (draw.chain.end().position_m - task.goal.position_m).norm();
+      sum_m += off_m;
+      squares_m2 += off_m * off_m;
+    }
+    const double mean_m = sum_m / kDraws;
+    const double deviation_m = std::sqrt(std::max(0.0, squares_m2 / kDraws - mean_m * mean_m));
+    std::printf("start %s: mean %.2f mm, standard deviation %.2f mm\n", start.name.c_str(),
+                1e3 * mean_m, 1e3 * deviation_m);
+    EXPECT_LE(mean_m, 2e-3) << start.name;
+    EXPECT_LE(deviation_m, 1e-3) << start.name;
+  }
+}
+
+}  // namespace
+}  // namespace tenon::planner

@@ -1,0 +1,87 @@
+// What the report draws: which planes, and what a plane cuts.
+
+#include "planner/report_canvas.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/planner/room_task.h"
+
+namespace tenon::planner {
+namespace {
+
+std::vector<std::pair<int, int>> axes_of(CoordinateMask coordinates) {
+  std::vector<std::pair<int, int>> axes;
+  for (const View& view : views_of(coordinates)) axes.emplace_back(view.right, view.up);
+  return axes;
+}
+
+TEST(ReportCanvas, ShowsThePlanesThatTheTaskMovesIn) {
+  using Axes = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(axes_of(0b000011), (Axes{{0, 1}}));
+  EXPECT_EQ(axes_of(0b000001), (Axes{{0, 1}}));
+  EXPECT_EQ(axes_of(0b000101), (Axes{{0, 2}}));
+  EXPECT_EQ(axes_of(0b010101), (Axes{{0, 2}})) << "a rotation about y shows from the side";
+  EXPECT_EQ(axes_of(0b000110), (Axes{{1, 2}}));
+  EXPECT_EQ(axes_of(0b000111), (Axes{{0, 1}, {0, 2}}));
+}
+
+Shape box(const Vector3& size_m, const Vector3& at_m) {
+  Shape shape;
+  shape.name = "box";
+  shape.size_m = size_m;
+  shape.pose.position_m = at_m;
+  return shape;
+}
+
+Canvas from_the_side() {
+  Task task = room_task();
+  task.environment = {box({1.0, 1.0, 1.0}, Vector3::Zero())};
+  return {views_of(0b101).front(), task, Vector3::Zero()};
+}
+
+std::size_t corners(const std::string& polygon) {
+  return static_cast<std::size_t>(std::count(polygon.begin(), polygon.end(), ','));
+}
+
+TEST(ReportCanvas, CutsAShapeWhereThePlanePassesThroughItAndNowhereElse) {
+  const Canvas canvas = from_the_side();
+  const Shape shape = box({0.2, 0.1, 0.4}, {0.1, 0.3, 0.0});
+  EXPECT_EQ(canvas.section(shape, 0.0, ""), "");
+  EXPECT_EQ(canvas.section(shape, 0.36, ""), "");
+  const std::string cut = canvas.section(shape, 0.3, "fill='red'");
+  EXPECT_EQ(corners(cut), 4U);
+  // x from 0 to 200 mm, z from -200 to 200 mm; the page's y points down.
+  for (const char* corner : {"0.00,200.00", "0.00,-200.00", "200.00,200.00", "200.00,-200.00"}) {
+    EXPECT_NE(cut.find(corner), std::string::npos) << cut;
+  }
+  EXPECT_NE(cut.find("fill='red'"), std::string::npos);
+}
+
+TEST(ReportCanvas, CutsACylinderOnItsSideAcrossItsAxis) {
+  Shape rod;
+  rod.kind = Shape::Kind::kCylinder;
+  rod.size_m = {0.1, 0.1, 0.4};
+  rod.pose.orientation = rotation_of({0.5 * M_PI, 0.0, 0.0});  // along y
+  EXPECT_EQ(corners(from_the_side().section(rod, 0.0, "")), 24U);
+  EXPECT_EQ(from_the_side().section(rod, 0.21, ""), "");
+}
+
+TEST(ReportCanvas, AShadowIsTheOutlineOfAllOfIt) {
+  const Canvas canvas = from_the_side();
+  EXPECT_EQ(corners(canvas.shadow(box({0.2, 0.1, 0.4}, {0.1, 0.3, 0.0}), Pose{}, "")), 4U);
+  Pose turned;
+  turned.orientation = rotation_of({0.3, 0.4, 0.5});
+  EXPECT_EQ(corners(canvas.shadow(box({0.2, 0.1, 0.4}, Vector3::Zero()), turned, "")), 6U);
+}
+
+TEST(ReportCanvas, APictureHoldsEverythingWithARim) {
+  // 1 m wide and 2 % on each side: from -520 to 520 mm.
+  EXPECT_NE(from_the_side().open(200).find("viewBox='-520.00 -520.00 1040.00 1040.00'"),
+            std::string::npos)
+      << from_the_side().open(200);
+}
+
+}  // namespace
+}  // namespace tenon::planner

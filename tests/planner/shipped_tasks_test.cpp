@@ -1,0 +1,35 @@
+// Every start of every task that ships, in every variant, stands free with all its particles.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planner/planner.h"
+#include "shared/config/load.h"
+#include "sim/rollout/ode_rollout.h"
+
+namespace tenon::planner {
+namespace {
+
+TEST(ShippedTasks, EveryStartOfEveryVariantIsFree) {
+  std::size_t starts = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(TENON_SOURCE_DIR "/planner/tasks")) {
+    const std::string file = entry.path().string();
+    std::vector<std::string> names = {file};
+    for (const std::string& variant : task_variants(file)) names.push_back(file + "#" + variant);
+    for (const std::string& name : names) {
+      const Task task = load_task(name);
+      sim::OdeRollout rollout(task);
+      for (const Start& start : task.starts) {
+        EXPECT_NO_THROW(check_start(task, start, rollout)) << name;
+        ++starts;
+      }
+    }
+  }
+  EXPECT_GE(starts, 12U);
+}
+
+}  // namespace
+}  // namespace tenon::planner
