@@ -70,8 +70,8 @@ ArmBody::Parameters arm_parameters(const Cell& cell, const Cell& real, const Tas
   parameters.start =
       options.joints ? *options.joints : start_joints(cell, find_start(task, options.start).pose);
   parameters.X_BE = compose(real.X_BT, displaced(Pose{}, options.offset));
-  // Taking up a target with the next SYNC and interpolating to it are two cycles already.
-  const double protocol_s = 2e-6 * cell.robot.cycle_us;
+  // The protocol's part is in the drives already.
+  const double protocol_s = protocol_lag_s(1e-6 * cell.robot.cycle_us);
   parameters.servo_lag_s = std::max(0.0, cell.robot.response_lag_s - protocol_s);
   parameters.backlash_m = options.world.backlash_m;
   parameters.backlash_rad = options.world.backlash_rad;

@@ -1,0 +1,45 @@
+#pragma once
+// Everything that an evaluation's reports are made of. Plain data; a report follows from it alone,
+// whichever way the runs were made.
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shared/experiment/world_ranges.h"
+#include "shared/plan/plan.h"
+#include "shared/task/task.h"
+#include "sim/evaluation/quantity.h"
+#include "sim/evaluation/run_line.h"
+#include "sim/evaluation/trial.h"
+
+namespace tenon::sim {
+
+/// One of the plans that are compared.
+struct Candidate {
+  std::string file;
+  std::string hash;  ///< of the file
+  Plan plan;
+  Start start;                      ///< the task's, of the plan's name
+  std::map<std::size_t, Run> runs;  ///< by number
+};
+
+struct Evaluation {
+  Task task;
+  std::string cell;                   ///< name
+  std::optional<WorldRanges> ranges;  ///< of the experiment
+  std::uint64_t seed = 0;
+  std::vector<Candidate> candidates;
+  std::vector<Bins> by;  ///< none, one or two: what success is broken down by
+  /// The command line without plan and number: what makes a run again.
+  std::string replay;
+
+  [[nodiscard]] Trial trial(std::size_t plan, std::size_t number) const {
+    return draw_trial(task, candidates[plan].start, ranges ? &*ranges : nullptr, seed, number);
+  }
+};
+
+}  // namespace tenon::sim

@@ -1,0 +1,223 @@
+#include "sim/evaluation/evaluation_html.h"
+
+#include "shared/base/text.h"
+#include "sim/evaluation/figures.h"
+#include "sim/evaluation/outline.h"
+#include "sim/evaluation/plot.h"
+#include "sim/evaluation/summary.h"
+
+namespace tenon::sim {
+namespace {
+
+constexpr const char* kStyle =
+    "body{font:15px/1.45 system-ui,sans-serif;max-width:1120px;margin:28px auto;padding:0 18px;"
+    "color:#222}h1{font-size:26px;margin:0 0 2px}h2{font-size:19px;margin:40px 0 6px}"
+    "p{margin:4px 0 12px;max-width:900px}.grey{color:#666}"
+    "table{border-collapse:collapse;font-size:14px;margin:14px 0}"
+    "td,th{border-bottom:1px solid #ddd;padding:5px 12px 5px 0;text-align:left;"
+    "vertical-align:top}th{color:#666;font-weight:600;border-bottom:2px solid #bbb}"
+    ".nowrap td{white-space:nowrap}td.num,th.num{text-align:right}td "
+    "svg{display:inline-block;vertical-align:-3px;"
+    "margin-right:8px}code{font-size:12px;color:#444}"
+    ".row{display:flex;flex-wrap:wrap;gap:18px 22px;align-items:flex-start}"
+    "figure{margin:0 0 14px}figcaption{font-size:13px;color:#555;max-width:640px;margin:2px 0 0 "
+    "58px}"
+    ".narrow figcaption{max-width:330px}svg{display:block}"
+    "svg text{font:12px system-ui,sans-serif}svg .label{font-size:13px;fill:#444}"
+    ".ground{fill:#fff}.frame{fill:none;stroke:#999}.tick{stroke:#999}"
+    ".key{display:inline-block;margin-right:18px}.key svg{display:inline-block;"
+    "vertical-align:-3px;margin-right:5px}";
+
+std::string percent(double part) { return format("%.1f", 1e2 * part); }
+
+std::string rate_cell(const Rate& rate) {
+  const Interval interval = rate.interval();
+  return "<td>" + rate_bar(rate) + "<b>" + percent(rate.value()) + " %</b> <span class='grey'>[" +
+         percent(interval.low) + ", " + percent(interval.high) + "] " +
+         format("%zu of %zu", rate.successes, rate.count) + "</span></td>";
+}
+
+std::string number_cell(const std::string& text) { return "<td class='num'>" + text + "</td>"; }
+
+std::string legend() {
+  const auto cross = [](const char* colour) {
+    return std::string(
+               "<svg width='14' height='14'><path d='M2 2l10 10m0 -10l-10 10' "
+               "stroke-width='2' stroke='") +
+           colour + "'/></svg>";
+  };
+  return std::string(
+             "<p><span class='key'><svg width='14' height='14'><circle cx='7' cy='7' r='5' "
+             "fill='") +
+         kSucceededColour + "'/></svg>done and at the goal</span><span class='key'>" +
+         cross(kStoppedColour) + "stopped with a reason</span><span class='key'>" +
+         cross(kWrongColour) + "done but not at the goal</span></p>\n";
+}
+
+std::string name_of(const Candidate& candidate) {
+  const std::size_t slash = candidate.file.rfind('/');
+  return escaped(slash == std::string::npos ? candidate.file : candidate.file.substr(slash + 1));
+}
+
+class Page {
+ public:
+  explicit Page(const Evaluation& evaluation) : evaluation_(evaluation), task_(evaluation.task) {
+    for (const Candidate& candidate : evaluation.candidates) {
+      summaries_.push_back(summarise(task_, candidate));
+    }
+  }
+
+  [[nodiscard]] std::string html() const {
+    const std::string title = escaped(task_.name);
+    std::string page = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>" +
+                       title + ": evaluation</title>\n<style>" + kStyle +
+                       "</style></head>\n<body>\n<h1>" + title + "</h1>\n" + opening() + legend();
+    page += plans_table() + errors_table();
+    for (std::size_t i = 0; i < summaries_.size(); ++i) page += section(i);
+    return page + "</body></html>\n";
+  }
+
+ private:
+  [[nodiscard]] std::string opening() const {
+    std::size_t runs = 0;
+    for (const Candidate& candidate : evaluation_.candidates) runs += candidate.runs.size();
+    std::string text = format("<p class='grey'>%zu runs on cell ", runs) +
+                       escaped(evaluation_.cell) +
+                       format(", seed %llu. ", static_cast<unsigned long long>(evaluation_.seed));
+    text += evaluation_.ranges
+                ? "Where the environment stands is drawn, and how else the world differs: "
+                  "experiment " +
+                      escaped(evaluation_.ranges->name) + "."
+                : "Where the environment stands is drawn; all else is as the files say.";
+    return text + " Every plan meets the same worlds. Intervals: 95 % (Wilson).</p>\n";
+  }
+
+  [[nodiscard]] std::string plans_table() const {
+    std::string html =
+        "<table class='nowrap'><tr><th>Plan</th><th>Method</th><th class='num'>Steps</th>"
+        "<th>Succeeded</th>";
+    for (const RateWithin& within : summaries_.front().within) {
+      html += format("<th>Draws within %g&sigma;</th>", within.distance);
+    }
+    html += "<th class='num'>Stopped</th><th class='num'>Done but wrong</th></tr>\n";
+    for (std::size_t i = 0; i < summaries_.size(); ++i) {
+      const Candidate& candidate = evaluation_.candidates[i];
+      const Summary& summary = summaries_[i];
+      html += "<tr><td><a href='#plan" + std::to_string(i) + "'>" + name_of(candidate) +
+              "</a></td><td>" + to_string(candidate.plan.method) + "</td>" +
+              number_cell(std::to_string(candidate.plan.steps.size())) + rate_cell(summary.success);
+      for (const RateWithin& within : summary.within) {
+        html += "<td><b>" + percent(within.rate.value()) + " %</b> <span class='grey'>[" +
+                percent(within.rate.interval().low) + ", " + percent(within.rate.interval().high) +
+                "]</span></td>";
+      }
+      html += number_cell(std::to_string(summary.stopped)) +
+              number_cell(std::to_string(summary.done_but_wrong)) + "</tr>\n";
+    }
+    return html + "</table>\n";
+  }
+
+  [[nodiscard]] std::string errors_table() const {
+    std::string html =
+        "<table class='nowrap'><tr><th>Runs that were done</th><th>Axis</th>"
+        "<th class='num'>Initial deviation</th><th class='num'>Final deviation</th>"
+        "<th class='num'>Ratio</th><th class='num'>Final mean</th>"
+        "<th class='num'>Largest force, p50 / p99 / max</th>"
+        "<th class='num'>Time, p50</th></tr>\n";
+    for (std::size_t i = 0; i < summaries_.size(); ++i) {
+      const Summary& summary = summaries_[i];
+      bool first = true;
+      for (const AxisError& error : summary.errors) {
+        const bool linear = error.axis < 3;
+        const double unit = linear ? 1e3 : 180.0 / M_PI;
+        const char* name = linear ? "mm" : "&deg;";
+        html += "<tr><td>" + (first ? name_of(evaluation_.candidates[i]) : "") + "</td><td>" +
+                axis_name(error.axis) + "</td>" +
+                number_cell(format("%.2f %s", unit * error.initial.deviation, name)) +
+                number_cell(format("%.4f %s", unit * error.final.deviation, name)) +
+                number_cell(ratio_text(error)) +
+                number_cell(format("%+.3f %s", unit * error.final.mean, name));
+        const Quantiles& force = summary.contact_force_N;
+        html += number_cell(first ? format("%.1f / %.1f / %.1f N", force.p50, force.p99, force.max)
+                                  : "") +
+                number_cell(first ? format("%.1f s", summary.duration_s.p50) : "") + "</tr>\n";
+        first = false;
+      }
+    }
+    return html + "</table>\n";
+  }
+
+  [[nodiscard]] static std::string figure(const std::string& svg, const std::string& caption) {
+    return "<figure>" + svg + "<figcaption>" + caption + "</figcaption></figure>\n";
+  }
+
+  [[nodiscard]] std::string section(std::size_t i) const {
+    const Candidate& candidate = evaluation_.candidates[i];
+    std::string html = "<h2 id='plan" + std::to_string(i) + "'>" + name_of(candidate) + ": " +
+                       to_string(candidate.plan.method) + ", start " +
+                       escaped(candidate.plan.start_name) + "</h2>\n";
+    if (candidate.plan.task_hash != task_.hash) {
+      html += "<p class='grey'>The plan was made for another task, or another variant of it.</p>\n";
+    }
+    for (const View& view : views_of(task_.coordinates)) html += figures(candidate, view);
+    if (!evaluation_.by.empty()) {
+      html += figure(figure_of_breakdown(evaluation_, candidate),
+                     evaluation_.by.size() == 1
+                         ? "Success over the drawn quantity, with 95 % intervals."
+                         : "Success in % over the two drawn quantities; point at a cell for its "
+                           "counts.");
+    }
+    return html + failures_table(candidate);
+  }
+
+  /// Two columns.
+  [[nodiscard]] std::string figures(const Candidate& candidate, const View& view) const {
+    std::string html = "<div class='row'>\n<div>\n";
+    html += figure(figure_of_runs(evaluation_, candidate, view),
+                   "Where each run began (small dots) and ended, joined by a line, seen from the "
+                   "environment as it really stood. Dashed: the part at its nominal start; green: "
+                   "at the goal.");
+    html += figure(figure_of_errors(evaluation_, candidate),
+                   "How far from the goal the runs ended; logarithmic.");
+    html += "</div>\n<div class='narrow'>\n";
+    html += figure(figure_of_draws(evaluation_, candidate, view),
+                   "Where the environment really stood, about where the plan believed it (green). "
+                   "Rings: standard deviations.");
+    html += figure(figure_of_ends(evaluation_, candidate, view),
+                   "Where the part ended about its goal, and the tolerance of " +
+                       format("%g mm.", 1e3 * task_.goal_tolerance_m));
+    return html + "</div>\n</div>\n";
+  }
+
+  [[nodiscard]] std::string failures_table(const Candidate& candidate) const {
+    const std::vector<const Run*> failed = failures(candidate);
+    if (failed.empty()) return "<p><b>No run failed.</b></p>\n";
+    std::string html = "<details" + std::string(failed.size() <= 20 ? " open" : "") + "><summary>" +
+                       std::to_string(failed.size()) + (failed.size() == 1 ? " run" : " runs") +
+                       " that failed</summary>\n<table><tr><th class='num'>Run</th>"
+                       "<th class='num'>&sigma;</th><th></th><th class='num'>Step</th>"
+                       "<th>Outcome</th><th>Why, and how to see it again</th></tr>\n";
+    for (const Run* run : failed) {
+      const TrialResult& result = run->result;
+      html += "<tr>" + number_cell(std::to_string(run->trial.number)) +
+              number_cell(format("%.2f", run->trial.distance)) +
+              "<td style='color:" + colour_of(classify(result)) + "'>" +
+              (classify(result) == TrialClass::kStopped ? "stopped" : "wrong") + "</td>" +
+              number_cell(result.step < 0 ? "" : std::to_string(result.step)) + "<td>" +
+              escaped(result.outcome) + "</td><td>" + escaped(result.reason) + "<br><code>" +
+              escaped(replay_command(evaluation_, candidate, run->trial.number)) +
+              "</code></td></tr>\n";
+    }
+    return html + "</table></details>\n";
+  }
+
+  const Evaluation& evaluation_;
+  const Task& task_;
+  std::vector<Summary> summaries_;
+};
+
+}  // namespace
+
+std::string evaluation_html(const Evaluation& evaluation) { return Page(evaluation).html(); }
+
+}  // namespace tenon::sim

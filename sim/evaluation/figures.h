@@ -1,0 +1,36 @@
+#pragma once
+// The figures of an evaluation's page, each an SVG element. Private to sim/evaluation.
+
+#include <string>
+
+#include "sim/evaluation/evaluation.h"
+#include "sim/evaluation/outline.h"
+#include "sim/evaluation/summary.h"
+
+namespace tenon::sim {
+
+// Red and blue that colour-blind eyes tell apart; the shapes of the marks say it a second time.
+inline constexpr const char* kSucceededColour = "#1f6eb4";
+inline constexpr const char* kStoppedColour = "#e08214";
+inline constexpr const char* kWrongColour = "#b2182b";
+[[nodiscard]] const char* colour_of(TrialClass trial_class);
+
+/// Where each run began and ended, seen from the environment as it really stood.
+[[nodiscard]] std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candidate,
+                                         const View& view);
+/// Where the environment stood in each run, about where it was said to stand.
+[[nodiscard]] std::string figure_of_draws(const Evaluation& evaluation, const Candidate& candidate,
+                                          const View& view);
+/// Where the part ended, close to the goal.
+[[nodiscard]] std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candidate,
+                                         const View& view);
+/// How many ended how far from the goal.
+[[nodiscard]] std::string figure_of_errors(const Evaluation& evaluation,
+                                           const Candidate& candidate);
+/// Success by one drawn quantity or two.
+[[nodiscard]] std::string figure_of_breakdown(const Evaluation& evaluation,
+                                              const Candidate& candidate);
+/// A proportion with its interval, to stand in a table.
+[[nodiscard]] std::string rate_bar(const Rate& rate);
+
+}  // namespace tenon::sim

@@ -1,0 +1,153 @@
+#include "sim/evaluation/summary.h"
+
+#include <algorithm>
+#include <set>
+
+#include "shared/base/text.h"
+
+namespace tenon::sim {
+namespace {
+
+Quantiles quantiles(const std::vector<double>& values) {
+  return {quantile(values, 0.5), quantile(values, 0.95), quantile(values, 0.99),
+          quantile(values, 1.0)};
+}
+
+int dimensions(const Start& start) { return static_cast<int>((start.sigma.array() > 0.0).count()); }
+
+std::string text_of(const Rate& rate) {
+  const Interval interval = rate.interval();
+  return format("%zu of %zu = %.2f %% [%.2f, %.2f]", rate.successes, rate.count, 1e2 * rate.value(),
+                1e2 * interval.low, 1e2 * interval.high);
+}
+
+std::string describe(const Task& task, const Candidate& candidate) {
+  const Summary s = summarise(task, candidate);
+  std::string text = candidate.file + " (" + to_string(candidate.plan.method) + ", start " +
+                     candidate.plan.start_name + ")\n";
+  text += "  succeeded " + text_of(s.success) +
+          format("; stopped %zu, done but wrong %zu\n", s.stopped, s.done_but_wrong);
+  for (const RateWithin& within : s.within) {
+    text +=
+        format("  within %g sigma (%.2f %% of all draws) ", within.distance, 1e2 * within.mass) +
+        text_of(within.rate) + "\n";
+  }
+  for (const AxisError& error : s.errors) {
+    const double unit = error.axis < 3 ? 1e3 : 180.0 / M_PI;
+    text += format("  %s: off by %.3f at first, then %.3f on average with deviation %.4f %s (",
+                   axis_name(error.axis), unit * error.initial.deviation, unit * error.final.mean,
+                   unit * error.final.deviation, error.axis < 3 ? "mm" : "deg") +
+            ratio_text(error) + ")\n";
+  }
+  text +=
+      format("  largest contact force: p50 %.1f, p95 %.1f, p99 %.1f, max %.1f N; %.1f s a run\n",
+             s.contact_force_N.p50, s.contact_force_N.p95, s.contact_force_N.p99,
+             s.contact_force_N.max, s.duration_s.p50);
+  return text;
+}
+
+}  // namespace
+
+std::string ratio_text(const AxisError& error) {
+  const double ratio = error.ratio();
+  if (ratio <= 0.0) return "";
+  return ratio < 1.0 ? format("1/%.0f", 1.0 / ratio) : format("%.1f times", ratio);
+}
+
+Summary summarise(const Task& task, const Candidate& candidate) {
+  Summary summary;
+  for (const double distance : std::set<double>{2.0, 3.0, task.particle_sigmas}) {
+    summary.within.push_back({distance, mass_within(distance, dimensions(candidate.start)), {}});
+  }
+  std::array<std::vector<double>, 6> initial;
+  std::array<std::vector<double>, 6> final;
+  std::vector<double> norms_m;
+  std::vector<double> forces_N;
+  std::vector<double> durations_s;
+  for (const auto& [number, run] : candidate.runs) {
+    const TrialResult& result = run.result;
+    const TrialClass trial_class = classify(result);
+    const bool succeeded = trial_class == TrialClass::kSucceeded;
+    ++summary.success.count;
+    summary.success.successes += succeeded;
+    summary.stopped += trial_class == TrialClass::kStopped;
+    summary.done_but_wrong += trial_class == TrialClass::kDoneButWrong;
+    ++summary.endings[result.ending];
+    for (RateWithin& within : summary.within) {
+      if (run.trial.distance > within.distance) continue;
+      ++within.rate.count;
+      within.rate.successes += succeeded;
+    }
+    if (!result.error) continue;
+    forces_N.push_back(result.contact_force_N_max);
+    durations_s.push_back(result.duration_s);
+    if (!result.done) continue;
+    norms_m.push_back(result.error->head<3>().norm());
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      initial[axis].push_back(run.trial.offset[static_cast<int>(axis)]);
+      final[axis].push_back((*result.error)[static_cast<int>(axis)]);
+    }
+  }
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if ((task.coordinates >> axis & 1U) == 0) continue;
+    summary.errors.push_back(
+        {static_cast<int>(axis), moments(final[axis]), moments(initial[axis])});
+  }
+  summary.error_norm_m = moments(norms_m);
+  summary.error_norms_m = quantiles(norms_m);
+  summary.contact_force_N = quantiles(forces_N);
+  summary.duration_s = quantiles(durations_s);
+  return summary;
+}
+
+std::vector<std::vector<Rate>> break_down(const std::vector<Bins>& by, const Candidate& candidate) {
+  if (by.empty()) return {};
+  const std::size_t rows = by.size() > 1 ? by[1].count : 1;
+  std::vector<std::vector<Rate>> rates(rows, std::vector<Rate>(by[0].count));
+  for (const auto& [number, run] : candidate.runs) {
+    const auto column = by[0].bin_of(run.trial);
+    const auto row = by.size() > 1 ? by[1].bin_of(run.trial) : std::optional<std::size_t>(0);
+    if (!column || !row) continue;
+    Rate& rate = rates[*row][*column];
+    ++rate.count;
+    rate.successes += classify(run.result) == TrialClass::kSucceeded;
+  }
+  return rates;
+}
+
+std::vector<const Run*> failures(const Candidate& candidate) {
+  std::vector<const Run*> failed;
+  for (const TrialClass wanted : {TrialClass::kDoneButWrong, TrialClass::kStopped}) {
+    for (const auto& [number, run] : candidate.runs) {
+      if (classify(run.result) == wanted) failed.push_back(&run);
+    }
+  }
+  return failed;
+}
+
+std::string replay_command(const Evaluation& evaluation, const Candidate& candidate,
+                           std::size_t number) {
+  return evaluation.replay + " --plan " + candidate.file + " --only " + std::to_string(number);
+}
+
+std::string describe(const Evaluation& evaluation) {
+  constexpr std::size_t kShown = 10;
+  std::string text;
+  for (const Candidate& candidate : evaluation.candidates) {
+    text += describe(evaluation.task, candidate);
+    const std::vector<const Run*> failed = failures(candidate);
+    for (std::size_t i = 0; i < std::min(failed.size(), kShown); ++i) {
+      const TrialResult& result = failed[i]->result;
+      text += format("  run %zu at %.2f sigma, %s: ", failed[i]->trial.number,
+                     failed[i]->trial.distance, to_string(classify(result))) +
+              result.reason + "\n    " +
+              replay_command(evaluation, candidate, failed[i]->trial.number) + "\n";
+    }
+    if (failed.size() > kShown) {
+      text += format("  and %zu more (--json and --report have all)\n", failed.size() - kShown);
+    }
+  }
+  return text;
+}
+
+}  // namespace tenon::sim

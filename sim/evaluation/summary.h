@@ -1,0 +1,82 @@
+#pragma once
+// What the runs of a plan come to. Pure; allocates.
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/evaluation/evaluation.h"
+#include "sim/evaluation/statistics.h"
+
+namespace tenon::sim {
+
+/// A proportion with its 95 % interval.
+struct Rate {
+  std::size_t successes = 0;
+  std::size_t count = 0;
+
+  [[nodiscard]] double value() const {
+    return count == 0 ? 0.0 : static_cast<double>(successes) / static_cast<double>(count);
+  }
+  [[nodiscard]] Interval interval() const { return wilson_interval(successes, count); }
+};
+
+/// Success of the draws within a Mahalanobis distance.
+struct RateWithin {
+  double distance = 0.0;
+  double mass = 0.0;  ///< the probability of such a draw
+  Rate rate;
+};
+
+struct Quantiles {
+  double p50 = 0.0;
+  double p95 = 0.0;
+  double p99 = 0.0;
+  double max = 0.0;
+};
+
+/// Over the runs that were done, how far off the part was before and after.
+struct AxisError {
+  int axis = 0;
+  Moments final;
+  Moments initial;
+  /// Final standard deviation over the initial one.
+  [[nodiscard]] double ratio() const {
+    return initial.deviation > 0.0 ? final.deviation / initial.deviation : 0.0;
+  }
+};
+
+/// "1/240", "3.4 times", or nothing where it cannot be told.
+[[nodiscard]] std::string ratio_text(const AxisError& error);
+
+struct Summary {
+  Rate success;
+  std::size_t stopped = 0;
+  std::size_t done_but_wrong = 0;
+  std::vector<RateWithin> within;              ///< 2, 3 and the task's c_p, ascending
+  std::map<std::string, std::size_t> endings;  ///< of all runs, by name
+  std::vector<AxisError> errors;               ///< of the search coordinates
+  Moments error_norm_m;                        ///< of the runs that were done
+  Quantiles error_norms_m;
+  Quantiles contact_force_N;  ///< largest of a run; over all runs that began
+  Quantiles duration_s;
+};
+[[nodiscard]] Summary summarise(const Task& task, const Candidate& candidate);
+
+/// Success by one drawn quantity or two: a row for each bin of the second, or a single one.
+[[nodiscard]] std::vector<std::vector<Rate>> break_down(const std::vector<Bins>& by,
+                                                        const Candidate& candidate);
+
+/// Runs that did not succeed, done but wrong before stopped, then by number.
+[[nodiscard]] std::vector<const Run*> failures(const Candidate& candidate);
+
+/// The shell command that makes a run again.
+[[nodiscard]] std::string replay_command(const Evaluation& evaluation, const Candidate& candidate,
+                                         std::size_t number);
+
+/// For people: a few lines a plan, and its first failures with the command that replays each.
+[[nodiscard]] std::string describe(const Evaluation& evaluation);
+
+}  // namespace tenon::sim

@@ -1,0 +1,173 @@
+// What an evaluation's runs come to, in numbers and on the page.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "sim/evaluation/evaluation_html.h"
+#include "sim/evaluation/evaluation_json.h"
+#include "sim/evaluation/outline.h"
+#include "sim/evaluation/summary.h"
+#include "tests/sim/literal_cell.h"
+
+namespace tenon::sim {
+namespace {
+
+Run run_of(std::size_t number, double offset_x_m, double error_x_m, bool done, bool at_goal) {
+  Run run;
+  run.trial.number = number;
+  run.trial.offset[0] = offset_x_m;
+  run.trial.distance = std::abs(offset_x_m) / 0.01;
+  run.trial.world.friction = 0.1 * static_cast<double>(number);
+  run.result.done = done;
+  run.result.at_goal = at_goal;
+  run.result.ending = done ? "plan_done" : "plan_failed";
+  run.result.reason = done ? "done" : "step 1: <contact> where none was";
+  run.result.error = Vector6(error_x_m * Vector6::Unit(0));
+  run.result.contact_force_N_max = 10.0 * static_cast<double>(number);
+  run.result.duration_s = 5.0;
+  return run;
+}
+
+/// Runs 1 to 6: three succeed, one is wrong, one stops, one has no world.
+Evaluation small_evaluation() {
+  Evaluation evaluation;
+  evaluation.task = wall_task();
+  evaluation.task.name = "a & b";
+  evaluation.cell = "test";
+  evaluation.seed = 3;
+  evaluation.replay = "tenon-evaluate --cell C --task 'T' --seed 3";
+  Candidate candidate;
+  candidate.file = "plans/p.tnp";
+  candidate.start = evaluation.task.starts.front();
+  candidate.start.sigma.head<2>() << 0.01, 0.01;
+  candidate.plan.steps.resize(2);
+  candidate.runs.emplace(5, run_of(5, 0.035, 0.1, false, false));
+  candidate.runs.emplace(1, run_of(1, 0.01, 1e-4, true, true));
+  candidate.runs.emplace(2, run_of(2, -0.01, 3e-4, true, true));
+  candidate.runs.emplace(4, run_of(4, 0.025, 0.03, true, false));
+  candidate.runs.emplace(3, run_of(3, 0.0, 2e-4, true, true));
+  Run none = run_of(6, 0.08, 0.0, false, false);
+  none.result.ending = kNoWorld;
+  none.result.error.reset();
+  candidate.runs.emplace(6, none);
+  evaluation.candidates.push_back(candidate);
+  return evaluation;
+}
+
+TEST(EvaluationSummary, CountsEveryRunOnce) {
+  const Evaluation evaluation = small_evaluation();
+  const Summary summary = summarise(evaluation.task, evaluation.candidates[0]);
+  EXPECT_EQ(summary.success.successes, 3U);
+  EXPECT_EQ(summary.success.count, 6U);
+  EXPECT_EQ(summary.stopped, 2U);
+  EXPECT_EQ(summary.done_but_wrong, 1U);
+  EXPECT_EQ(summary.endings.at("plan_done"), 4U);
+  EXPECT_EQ(summary.endings.at("plan_failed"), 1U);
+  EXPECT_EQ(summary.endings.at(kNoWorld), 1U);
+  ASSERT_EQ(summary.within.size(), 2U);
+  EXPECT_EQ(summary.within[0].rate.count, 3U);
+  EXPECT_EQ(summary.within[1].rate.count, 4U);
+  EXPECT_EQ(summary.within[1].rate.successes, 3U);
+  EXPECT_NEAR(summary.within[1].mass, 0.988891, 1e-6);
+}
+
+TEST(EvaluationSummary, ErrorsAreThoseOfRunsThatWereDone) {
+  const Evaluation evaluation = small_evaluation();
+  const Summary summary = summarise(evaluation.task, evaluation.candidates[0]);
+  ASSERT_EQ(summary.errors.size(), 2U);
+  // 0.1, 0.3, 0.2 and 30 mm; offsets 10, -10, 0 and 25 mm.
+  EXPECT_NEAR(summary.errors[0].final.mean, 7.65e-3, 1e-9);
+  EXPECT_NEAR(summary.errors[0].final.deviation, 14.900223e-3, 1e-8);
+  EXPECT_NEAR(summary.errors[0].initial.deviation, 14.930394e-3, 1e-8);
+  EXPECT_NEAR(summary.errors[0].ratio(), 14.900223 / 14.930394, 1e-6);
+  EXPECT_EQ(summary.errors[1].ratio(), 0.0);
+  EXPECT_EQ(summary.contact_force_N.max, 50.0);  // the run without a world has none
+  EXPECT_EQ(summary.contact_force_N.p50, 30.0);
+}
+
+TEST(EvaluationSummary, ABreakdownPutsEachRunInItsCell) {
+  Evaluation evaluation = small_evaluation();
+  evaluation.by = {parse_bins("friction=0.05:0.65:3"), parse_bins("distance=0:4:2")};
+  const auto rates = break_down(evaluation.by, evaluation.candidates[0]);
+  ASSERT_EQ(rates.size(), 2U);
+  EXPECT_EQ(rates[0][0].successes, 2U);  // runs 1 and 2
+  EXPECT_EQ(rates[0][1].count, 1U);      // run 3
+  EXPECT_EQ(rates[1][1].count, 1U);      // run 4
+  EXPECT_EQ(rates[1][1].successes, 0U);
+  EXPECT_EQ(rates[1][2].count, 1U);  // run 5; run 6 is 8 sigma out
+}
+
+TEST(EvaluationSummary, TheWorstFailuresComeFirstEachWithItsCommand) {
+  const Evaluation evaluation = small_evaluation();
+  const auto failed = failures(evaluation.candidates[0]);
+  ASSERT_EQ(failed.size(), 3U);
+  EXPECT_EQ(failed[0]->trial.number, 4U);
+  EXPECT_EQ(failed[1]->trial.number, 5U);
+  EXPECT_NE(describe(evaluation)
+                .find("tenon-evaluate --cell C --task 'T' --seed 3 --plan "
+                      "plans/p.tnp --only 4\n"),
+            std::string::npos);
+}
+
+TEST(EvaluationJson, HoldsTheSummaryAndEveryRunInOrder) {
+  const auto json = nlohmann::json::parse(evaluation_json(small_evaluation()));
+  const auto& plan = json["plans"][0];
+  EXPECT_EQ(plan["summary"]["success"]["succeeded"], 3);
+  EXPECT_NEAR(plan["summary"]["success"]["wilson95_low"].get<double>(), 0.1876, 1e-4);
+  ASSERT_EQ(plan["runs"].size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(plan["runs"][i]["run"], i + 1);
+  EXPECT_EQ(plan["runs"][3]["class"], "done_but_wrong");
+  EXPECT_TRUE(plan["runs"][5]["error"].is_null());
+}
+
+std::size_t count_of(const std::string& text, const std::string& piece) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+TEST(EvaluationHtml, StandsAloneAndMarksEveryFailure) {
+  Evaluation evaluation = small_evaluation();
+  evaluation.by = {parse_bins("friction=0.05:0.65:3"), parse_bins("distance=0:4:2")};
+  const std::string page = evaluation_html(evaluation);
+  EXPECT_EQ(page.find("http"), std::string::npos);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+  EXPECT_NE(page.find("a &amp; b"), std::string::npos);
+  EXPECT_EQ(page.find("<contact>"), std::string::npos);
+  EXPECT_NE(page.find("--only 4</code>"), std::string::npos);
+  // A cross in each of the three figures of places, with what happened.
+  EXPECT_EQ(count_of(page, "<title>run 4, 2.50 sigma"), 3U);
+  EXPECT_EQ(count_of(page, "<title>run 5, 3.50 sigma"), 3U);
+  EXPECT_EQ(count_of(page, "<title>run 6"), 1U);  // it ended nowhere
+}
+
+TEST(EvaluationOutline, ABoxTurnedByAnEighthShowsItsDiagonal) {
+  Shape box{"box", Shape::Kind::kBox, {0.2, 0.2, 0.1}, {}};
+  Pose turned;
+  turned.orientation = Eigen::AngleAxisd(0.25 * 3.14159265358979, Vector3::UnitZ());
+  double right_mm = 0.0;
+  for (const Point& point : outline(box, turned, View{})) right_mm = std::max(right_mm, point.x());
+  EXPECT_NEAR(right_mm, 141.42136, 1e-4);
+  EXPECT_EQ(outline(box, turned, View{}).size(), 4U);
+  // From the front it is 282.8 mm wide and 100 mm high.
+  const auto front = outline(box, turned, View{0, 2, 1});
+  double up_mm = 0.0;
+  for (const Point& point : front) up_mm = std::max(up_mm, point.y());
+  EXPECT_NEAR(up_mm, 50.0, 1e-6);
+}
+
+TEST(EvaluationOutline, ATaskInSpaceIsSeenFromTwoSides) {
+  EXPECT_EQ(views_of(0b000011).size(), 1U);
+  EXPECT_EQ(views_of(0b000111).size(), 2U);
+  ASSERT_EQ(views_of(0b000101).size(), 1U);
+  EXPECT_EQ(views_of(0b000101)[0].up, 2);
+  EXPECT_EQ(views_of(0b000110)[0].right, 1);
+}
+
+}  // namespace
+}  // namespace tenon::sim
