@@ -130,7 +130,8 @@ std::string Canvas::shadow(const Shape& shape, const Pose& frame, const std::str
 
 std::string Canvas::polygon(std::vector<Point> points, const std::string& style) const {
   std::string text = "<polygon points='";
-  for (const Point& p : hull(std::move(points))) {
+  const std::vector<Point> outline = hull(std::move(points));
+  for (const Point& p : outline) {
     text += format("%.2f,%.2f ", 1e3 * p.x(), -1e3 * p.y());
   }
   return text + "' stroke-width='" + format("%.2f", 2.0 * unit_mm()) + "' " + style + "/>\n";

@@ -28,8 +28,8 @@ class ContactDetector {
   void update(std::int64_t time_ns, const Vector6& wrench, ContactSignature kept = {});
 
   [[nodiscard]] ContactSignature signature() const { return signature_; }
-  /// Bits that are not set and whose last fresh sample was above the on-threshold, or not much below
-  /// it since then.
+  /// Bits that are not set and whose last fresh sample was above the on-threshold, or not much
+  /// below it since then.
   [[nodiscard]] ContactSignature candidates() const { return candidates_; }
   /// Bits that were kept, and would have been lost by the last fresh sample.
   [[nodiscard]] ContactSignature weak() const { return weak_; }
