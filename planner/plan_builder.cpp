@@ -1,9 +1,11 @@
 #include "planner/plan_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 
+#include "planner/primitives.h"
 #include "shared/base/error.h"
 #include "shared/plan/codec.h"
 
@@ -18,6 +20,19 @@ Successor next_step(std::size_t step, std::size_t steps) {
 }
 
 }  // namespace
+
+MoveParameters search_move(const Task& task, const Start& start,
+                           const CellAssumptions& assumptions) {
+  const std::array<Vector6, 1> displacement = {step_primitives(task).front().displacement};
+  return move_parameters(draft_plan(task, start, assumptions, displacement), 0);
+}
+
+MoveParameters long_move(const Task& task, MoveParameters move) {
+  move.slow_from_m = task.long_step_m;
+  move.timeout_us =
+      static_cast<std::uint32_t>(1e6 * (2.0 + 1.5 * task.long_step_m / move.speeds.approach_mps));
+  return move;
+}
 
 Plan through_bytes(const Plan& plan) {
   DecodedPlan decoded = decode_plan(encode_plan(plan));

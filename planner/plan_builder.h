@@ -25,6 +25,15 @@ struct CellAssumptions {
                               const CellAssumptions& assumptions,
                               std::span<const Vector6> displacements);
 
+/// Everything of the search's moves but their displacement: that of a plan's step, as the file has
+/// it.
+[[nodiscard]] MoveParameters search_move(const Task& task, const Start& start,
+                                         const CellAssumptions& assumptions);
+
+/// Likewise of the long moves that only look for attractors: as fast as the task allows, with the
+/// time that they need. @param move what search_move() says
+[[nodiscard]] MoveParameters long_move(const Task& task, MoveParameters move);
+
 /// The plan that its bytes say.
 /// @throws InputError where it cannot be represented
 [[nodiscard]] Plan through_bytes(const Plan& plan);

@@ -1,7 +1,6 @@
 #include "planner/planner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -36,20 +35,6 @@ std::string start_collision(const Task& task, const Start& start, Rollout& rollo
   return {};
 }
 
-/// Everything of a move but its displacement: that of a plan's step, as the file has it.
-MoveParameters step_move(const Task& task, const Start& start, const CellAssumptions& cell) {
-  const std::array<Vector6, 1> displacement = {step_primitives(task).front().displacement};
-  return move_parameters(draft_plan(task, start, cell, displacement), 0);
-}
-
-/// Long moves only look for attractors: as fast as the task allows, with the time that they need.
-MoveParameters long_move(const Task& task, MoveParameters move) {
-  move.slow_from_m = task.long_step_m;
-  move.timeout_us =
-      static_cast<std::uint32_t>(1e6 * (2.0 + 1.5 * task.long_step_m / move.speeds.approach_mps));
-  return move;
-}
-
 template <typename Work>
 auto timed(const std::function<double()>& now_s, double& seconds, Work work) {
   const double from_s = now_s();
@@ -68,8 +53,8 @@ class Planning {
         now_s_(now_s),
         began_s_(now_s()),
         pool_(rollout, options.threads),
-        succ_(pool_, step_move(task, start, options.assumptions), task.rollout_step_us),
-        long_succ_(pool_, long_move(task, step_move(task, start, options.assumptions)),
+        succ_(pool_, search_move(task, start, options.assumptions), task.rollout_step_us),
+        long_succ_(pool_, long_move(task, search_move(task, start, options.assumptions)),
                    task.rollout_step_us) {}
 
   PlanReport run() {

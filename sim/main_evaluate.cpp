@@ -30,7 +30,6 @@
 #include "shared/config/command_line.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
-#include "shared/config/yaml_value.h"
 #include "shared/task/inserted.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/evaluation_html.h"
@@ -188,8 +187,7 @@ sim::TrialResult execute(const Cell& cell, const sim::Evaluation& evaluation, st
   return chain->result();
 }
 
-// --- What is evaluated
-// -----------------------------------------------------------------------------
+// --- What is evaluated ------------------------------------------------------------------------
 
 std::string hash_of(const std::string& bytes) {
   return format("%016llx", static_cast<unsigned long long>(config::fnv1a_64(bytes)));
@@ -198,16 +196,8 @@ std::string hash_of(const std::string& bytes) {
 /// Of cell, robot, task, experiment and this program: what a run depends on besides plan and
 /// number.
 std::string identity_of(const CommandLine& line, const Task& task) {
-  std::string cell = config::read_file(line.cell);
-  const auto robot = config::Value::parse(line.cell, cell).peek("robot");
-  const auto folder =
-      (std::filesystem::path(line.cell).parent_path() / robot->text()).parent_path();
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.is_regular_file()) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  for (const auto& file : files) cell += config::read_file(file);
+  std::string cell;
+  for (const auto& file : cell_files(line.cell)) cell += config::read_file(file);
   std::ifstream stream("/proc/self/exe", std::ios::binary);
   const std::string program{std::istreambuf_iterator<char>(stream), {}};
 
@@ -268,8 +258,7 @@ void check_bins(const sim::Evaluation& evaluation, std::size_t count) {
   }
 }
 
-// --- Many runs
-// -------------------------------------------------------------------------------------
+// --- Many runs --------------------------------------------------------------------------------
 
 /// One line that is written over, on a terminal alone.
 class Progress {
@@ -379,8 +368,7 @@ int evaluate(const CommandLine& line) {
   return 0;
 }
 
-// --- Command line
-// ------------------------------------------------------------------------------------
+// --- Command line -----------------------------------------------------------------------------
 
 int parse_and_evaluate(int argc, char** argv) {
   CommandLine line;

@@ -28,6 +28,9 @@ namespace tenon {
 /// hw/cells/NAME.yaml. The robot is named relative to the cell's file.
 [[nodiscard]] Cell load_cell(const std::filesystem::path& file);
 
+/// The files that a cell is made of, in a fixed order: its own, and all in its robot's folder.
+[[nodiscard]] std::vector<std::filesystem::path> cell_files(const std::filesystem::path& file);
+
 /// sim/experiments/*.yaml.
 [[nodiscard]] WorldRanges load_experiment(const std::filesystem::path& file);
 

@@ -43,4 +43,18 @@ Cell load_cell(const std::filesystem::path& file) {
   return cell;
 }
 
+std::vector<std::filesystem::path> cell_files(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> files;
+  const auto cell = config::Value::parse(file, config::read_file(file));
+  if (const auto robot = cell.peek("robot")) {
+    const auto folder = (file.parent_path() / robot->text()).parent_path();
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  files.insert(files.begin(), file);
+  return files;
+}
+
 }  // namespace tenon

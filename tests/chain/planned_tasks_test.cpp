@@ -7,9 +7,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "planner/attractors.h"
+#include "planner/plan_builder.h"
 #include "planner/planner.h"
 #include "shared/config/load.h"
 #include "shared/task/inserted.h"
@@ -91,6 +94,26 @@ INSTANTIATE_TEST_SUITE_P(Tree, PlannedTaskInThePlane,
                          testing::Values("box_on_table_2d.yaml", "peg_in_hole_2d.yaml",
                                          "peg_in_hole_2d_fine.yaml#clearance_0.5mm",
                                          "toy_1d.yaml"));
+
+// The block with the hole is small: from the start no push brings the particles together.
+TEST(SampledAttractors, LeadToFacesThatPushesFromTheStartMiss) {
+  Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/peg_in_hole_3d.yaml");
+  const Start& start = task.starts.front();
+  const Belief belief = cross_polytope(task, start);
+  RolloutPool pool(sim::OdeRollout(task), 2);
+  const MoveParameters move = long_move(task, search_move(task, start, {}));
+  const auto axes_of_guides = [&](std::size_t samples) {
+    task.attractor_samples = samples;
+    SuccessorEngine succ(pool, move, task.rollout_step_us);
+    std::set<int> axes;
+    for (const Guide& guide : find_attractors(task, belief, succ, pool.front()).guides) {
+      for (const ContactAttractor& contact : guide.contacts) axes.insert(contact.axis);
+    }
+    return axes;
+  };
+  EXPECT_TRUE(axes_of_guides(0).empty());
+  EXPECT_GE(axes_of_guides(20).size(), 2U);
+}
 
 TEST(PlannedBox, EndsWithinTwoMillimetresWithOneOfSpreadFromEveryStart) {
   const Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml");

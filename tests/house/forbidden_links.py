@@ -52,7 +52,7 @@ def make_skeleton(root):
         if relative.parts[0] in (*FOLDERS, "lcmtypes", "tests"):
             (root / relative).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, root / relative)
-    for folder in (*FOLDERS, "shared/config", "tests/shared"):
+    for folder in (*FOLDERS, "shared/config", "tests/shared", "tests/benchmarks/paper_tables"):
         (root / folder).mkdir(parents=True, exist_ok=True)
         (root / folder / "can.cpp").write_text("int nothing_here;\n")
     for main in MAINS:

@@ -14,8 +14,6 @@
 namespace tenon::paper_tables {
 namespace {
 
-constexpr std::uint32_t kLongMove_us = 60'000'000;
-
 struct PaperExpansion {
   const char* turn;
   const char* led;
@@ -53,15 +51,10 @@ std::string joined(const std::vector<std::string>& names) {
 
 std::vector<Expansion> expansions_of(const Task& toy, const Rollout& rollout) {
   const planner::CellAssumptions cell{.contact_stiffness_Npm = toy.contact_stiffness_Npm};
-  const std::array<Vector6, 1> step = {planner::step_primitives(toy).front().displacement};
-  const MoveParameters move =
-      move_parameters(planner::draft_plan(toy, toy.starts.front(), cell, step), 0);
-  MoveParameters long_move = move;
-  long_move.slow_from_m = toy.long_step_m;
-  long_move.timeout_us = kLongMove_us;
+  const MoveParameters move = planner::search_move(toy, toy.starts.front(), cell);
   planner::RolloutPool pool(rollout, 1);
   planner::SuccessorEngine succ(pool, move, toy.rollout_step_us);
-  planner::SuccessorEngine long_succ(pool, long_move, toy.rollout_step_us);
+  planner::SuccessorEngine long_succ(pool, planner::long_move(toy, move), toy.rollout_step_us);
 
   const planner::Belief start = planner::cross_polytope(toy, toy.starts.front());
   const planner::Attractors attractors =
