@@ -37,7 +37,7 @@ struct PlannerOptions {
   CellAssumptions assumptions;
   ValidationParameters validation;
   std::size_t expansions_max = 5000;  ///< of one search
-  std::size_t rounds_max = 25;        ///< searches, each without what the last ones had refuted
+  std::size_t rounds_max = 100;       ///< searches, each without what the last ones had refuted
 };
 
 /// Seconds spent in each part.

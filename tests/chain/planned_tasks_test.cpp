@@ -92,8 +92,7 @@ TEST_P(PlannedTaskInThePlane, IsTheSamePlanByteForByteOnOneTwoAndFourThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Tree, PlannedTaskInThePlane,
                          testing::Values("box_on_table_2d.yaml", "peg_in_hole_2d.yaml",
-                                         "peg_in_hole_2d_fine.yaml#clearance_0.5mm",
-                                         "toy_1d.yaml"));
+                                         "peg_in_hole_2d_fine.yaml#clearance_1mm", "toy_1d.yaml"));
 
 // The block with the hole is small: from the start no push brings the particles together.
 TEST(SampledAttractors, LeadToFacesThatPushesFromTheStartMiss) {
