@@ -9,6 +9,8 @@
 namespace tenon::sim {
 namespace {
 
+constexpr double kGrazing_m = 1e-7;  // points no deeper share alike
+
 Vector3 normal_of(const dContactGeom& point) {
   return {point.normal[0], point.normal[1], point.normal[2]};
 }
@@ -74,17 +76,20 @@ void thin_out(std::vector<dContactGeom>& points) {
   points.resize(kept.size());
 }
 
-std::vector<double> sharers(const std::vector<dContactGeom>& points) {
-  std::vector<double> counts;
+std::vector<double> shares(const std::vector<dContactGeom>& points) {
+  const auto depth_m = [](const dContactGeom& point) {
+    return std::max(kGrazing_m, static_cast<double>(point.depth));
+  };
+  std::vector<double> parts;
   for (const dContactGeom& point : points) {
-    double count = 0.0;
+    double all_m = 0.0;
     for (const dContactGeom& other : points) {
       const double cosine = std::max(0.0, normal_of(point).dot(normal_of(other)));
-      count += cosine * cosine;
+      all_m += cosine * cosine * depth_m(other);
     }
-    counts.push_back(count);
+    parts.push_back(depth_m(point) / all_m);
   }
-  return counts;
+  return parts;
 }
 
 }  // namespace tenon::sim

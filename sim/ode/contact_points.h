@@ -16,10 +16,11 @@ inline constexpr std::size_t kPointsAFace = 9;
 /// The order stays as it was. Points on a face with no more than kPointsAFace are all kept.
 void thin_out(std::vector<dContactGeom>& points);
 
-/// For every point, among how many the stiffness of the face is shared out that it pushes on: the
-/// sum of cos^2 of the angles to all normals on its side. Points of one flat face count 1 each and
-/// those of walls at right angles nothing; the adjoining sides of a round hole count in part, so
-/// that it is about as stiff in every direction.
-[[nodiscard]] std::vector<double> sharers(const std::vector<dContactGeom>& points);
+/// For every point, the part of its face's stiffness that it gets: in proportion to its depth, and
+/// as if it were alone on the face where the others only graze. So the force of a tilted face does
+/// not jump when another of its corners comes into reach, and does not depend on how many points
+/// stand for it. Normals at right angles are different faces; the adjoining sides of a round hole
+/// count as cos^2 of the angle between them, so that it is about as stiff in every direction.
+[[nodiscard]] std::vector<double> shares(const std::vector<dContactGeom>& points);
 
 }  // namespace tenon::sim

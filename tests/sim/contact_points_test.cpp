@@ -79,12 +79,36 @@ TEST(ContactPoints, StiffnessIsSharedAmongThoseThatPushTheSameWay) {
       point({0.0, 0.0, 0.0}, Vector3::UnitZ()), point({0.1, 0.0, 0.0}, Vector3::UnitZ()),
       point({0.0, 0.0, 0.0}, -Vector3::UnitZ()), point({0.0, 0.0, 0.0}, Vector3::UnitX()),
       point({0.0, 0.0, 0.0}, Vector3(0.0, diagonal, diagonal))};
-  const std::vector<double> counts = sharers(points);
-  EXPECT_NEAR(counts[0], 2.5, 1e-12);
-  EXPECT_NEAR(counts[1], 2.5, 1e-12);
-  EXPECT_NEAR(counts[2], 1.0, 1e-12);
-  EXPECT_NEAR(counts[3], 1.0, 1e-12);
-  EXPECT_NEAR(counts[4], 2.0, 1e-12);
+  const std::vector<double> part = shares(points);
+  EXPECT_NEAR(part[0], 1.0 / 2.5, 1e-12);
+  EXPECT_NEAR(part[1], 1.0 / 2.5, 1e-12);
+  EXPECT_NEAR(part[2], 1.0, 1e-12);
+  EXPECT_NEAR(part[3], 1.0, 1e-12);
+  EXPECT_NEAR(part[4], 1.0 / 2.0, 1e-12);
+}
+
+/// What points on the plane z = 0 push back with, of a spring of 1 N/m.
+double force_N(const std::vector<double>& depths_m) {
+  std::vector<dContactGeom> points;
+  for (const double depth_m : depths_m) points.push_back(point(Vector3::Zero(), Vector3::UnitZ(), depth_m));
+  const std::vector<double> part = shares(points);
+  double sum_N = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) sum_N += part[i] * depths_m[i];
+  return sum_N;
+}
+
+TEST(ContactPoints, ATiltedFacesForceDoesNotJumpWhenAnotherCornerComesIntoReach) {
+  // It stands on one edge; then its other edge begins to graze, and then goes on into the ground.
+  const double on_edge_N = force_N({7e-5, 7e-5});
+  EXPECT_NEAR(on_edge_N, 7e-5, 1e-12);
+  EXPECT_NEAR(force_N({7e-5, 7e-5, 0.0, 0.0}), on_edge_N, 2e-3 * on_edge_N);
+  EXPECT_NEAR(force_N({7e-5, 7e-5, 1e-6, 1e-6}), on_edge_N, 0.02 * on_edge_N);
+  EXPECT_NEAR(force_N({7e-5, 7e-5, 7e-5, 7e-5}), on_edge_N, 1e-12);
+}
+
+TEST(ContactPoints, AForceDoesNotDependOnHowManyPointsStandForAnEdge) {
+  EXPECT_NEAR(force_N({7e-5, 7e-5, 7e-5, 2e-6, 2e-6}), force_N({7e-5, 7e-5, 2e-6, 2e-6}),
+              0.02 * 7e-5);
 }
 
 /// A cube pressed down on what is below z = 0; k_e 5e4 N/m.
