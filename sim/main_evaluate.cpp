@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -61,6 +62,7 @@ struct CommandLine {
   std::string runs;
   std::string json;
   std::string report;
+  std::string black_box;
 };
 
 // --- One run -------------------------------------------------------------------------------------
@@ -100,9 +102,11 @@ sim::VirtualCell::Options world_of(const sim::Candidate& candidate, const Prepar
 class Chain {
  public:
   Chain(const Cell& cell, const Task& task, const sim::Candidate& candidate,
-        const Prepared& prepared, const sim::Trial& trial)
+        const Prepared& prepared, const sim::Trial& trial,
+        const executor::CycleRunner::Parameters& loop)
       : cell_(cell),
         task_(task),
+        loop_(loop),
         link_({.bitrate_bps = cell.robot.bitrate_bps, .seed = trial.seed}, cell.robot.master_node),
         arm_(cell.robot, link_.master()),
         controller_(cell, prepared.dry_run, {}),
@@ -153,6 +157,8 @@ class Chain {
     std::printf("%s\n%s", told().message.c_str(), sim::describe(virtual_cell_.truth()).c_str());
   }
 
+  [[nodiscard]] const executor::BlackBox& black_box() const { return runner_.black_box(); }
+
  private:
   [[nodiscard]] executor::RunResult told() const {
     return executor::gather_result(controller_, runner_, 0,
@@ -171,11 +177,18 @@ class Chain {
   bool plan_ran_ = false;
 };
 
+/// What is kept of the cycles of a run that is told.
+constexpr double kToldCycles_s = 60.0;
+
+/// @param look called with a run that is told, once it has ended; empty: it is not told
 sim::TrialResult execute(const Cell& cell, const sim::Evaluation& evaluation, std::size_t plan,
-                         const Prepared& prepared, const sim::Trial& trial, bool verbose) {
+                         const Prepared& prepared, const sim::Trial& trial,
+                         const std::function<void(const Chain&)>& look = {}) {
+  executor::CycleRunner::Parameters loop;
+  if (look) loop.black_box_s = kToldCycles_s;
   std::optional<Chain> chain;
   try {
-    chain.emplace(cell, evaluation.task, evaluation.candidates[plan], prepared, trial);
+    chain.emplace(cell, evaluation.task, evaluation.candidates[plan], prepared, trial, loop);
   } catch (const InputError& error) {
     sim::TrialResult result;
     result.ending = sim::kNoWorld;
@@ -183,7 +196,7 @@ sim::TrialResult execute(const Cell& cell, const sim::Evaluation& evaluation, st
     return result;
   }
   chain->run();
-  if (verbose) chain->print();
+  if (look) look(*chain);
   return chain->result();
 }
 
@@ -326,7 +339,7 @@ void make_runs(const CommandLine& line, const Cell& cell, sim::Evaluation& evalu
   Progress progress(maker.all(), found);
   maker.make(
       [&](std::size_t plan, const sim::Trial& trial) {
-        return execute(cell, evaluation, plan, prepared[plan], trial, false);
+        return execute(cell, evaluation, plan, prepared[plan], trial);
       },
       [&](const sim::Run& run) {
         progress.count(classify(run.result) == sim::TrialClass::kSucceeded);
@@ -343,7 +356,10 @@ int replay(const CommandLine& line, const Cell& cell, const sim::Evaluation& eva
         candidate.file.c_str(), trial.number, trial.distance,
         static_cast<unsigned long long>(trial.seed));
     const sim::TrialResult result =
-        execute(cell, evaluation, plan, prepare(cell, candidate), trial, true);
+        execute(cell, evaluation, plan, prepare(cell, candidate), trial, [&](const Chain& chain) {
+          chain.print();
+          if (!line.black_box.empty()) chain.black_box().write_csv(line.black_box);
+        });
     std::printf(
         "%s\n%s\n", to_string(classify(result)),
         sim::run_line(candidate.hash, {trial, result}, evaluation.ranges.has_value()).c_str());
@@ -352,7 +368,10 @@ int replay(const CommandLine& line, const Cell& cell, const sim::Evaluation& eva
 }
 
 int evaluate(const CommandLine& line) {
-  for (const std::string& file : {line.json, line.report}) {
+  if (!line.black_box.empty() && line.plans.size() != 1) {
+    throw InputError("--black-box " + line.black_box + ": holds one run; give one --plan");
+  }
+  for (const std::string& file : {line.json, line.report, line.black_box}) {
     if (!file.empty()) check_writable(file);
   }
   const Cell cell = load_cell(line.cell);
@@ -409,9 +428,13 @@ int parse_and_evaluate(int argc, char** argv) {
       app.add_option("--merge", line.merge, "run logs of shards; what they lack is made");
   app.add_option("--json", line.json, "file for results and all runs");
   app.add_option("--report", line.report, "file for an HTML page with the plots");
-  app.add_option("--only", line.only, "make one run again by its number, and tell it in full")
-      ->excludes(shard)
-      ->excludes(merge);
+  CLI::Option* only =
+      app.add_option("--only", line.only, "make one run again by its number, and tell it in full")
+          ->excludes(shard)
+          ->excludes(merge);
+  app.add_option("--black-box", line.black_box,
+                 "with --only and one plan: the run's last minute of cycles as CSV")
+      ->needs(only);
   parse(app, argc, argv);
   return evaluate(line);
 }
