@@ -26,7 +26,7 @@ if(TENON_SANITIZERS)
   add_link_options(-fsanitize=${TENON_SANITIZERS})
   # Instrumented code makes GCC take an empty std::optional for an uninitialised value; the builds
   # without sanitizers keep this warning.
-  add_compile_options(-Wno-error=maybe-uninitialized)
+  add_compile_options(-Wno-maybe-uninitialized)
 endif()
 
 find_program(CCACHE ccache)

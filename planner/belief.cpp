@@ -6,8 +6,8 @@
 namespace tenon::planner {
 namespace {
 
-constexpr double kCell_m = 1e-3;
-constexpr double kCell_rad = 0.2 * 3.14159265358979323846 / 180.0;
+constexpr double kCell_m = 1e-4;
+constexpr double kCell_rad = 0.02 * 3.14159265358979323846 / 180.0;
 
 Eigen::Quaterniond mean_orientation(const Belief& belief) {
   // Newton's iteration on the rotation group; quadratic, a few steps.
@@ -47,7 +47,7 @@ Belief cross_polytope(const Task& task, const Start& start) {
       displacement[axis] = sign * offset;
       const double friction = slippery ? task.friction.low : task.friction.high;
       belief.particles.push_back(
-          {displaced(start.pose, displacement), {}, {friction, task.contact_stiffness_Npm}});
+          {displaced(start.pose, displacement), {}, {friction, task.contact_stiffness_Npm, task.oversize_m}});
       slippery = !slippery;
     }
     slippery = !slippery;
@@ -99,6 +99,7 @@ void append_cell(const Particle& particle, double cell_m, double cell_rad,
   key.push_back(particle.signature.bits);
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.friction));
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.contact_stiffness_Npm));
+  key.push_back(std::bit_cast<std::int64_t>(particle.physics.oversize_m));
 }
 
 BeliefKey identity(const Belief& belief) {

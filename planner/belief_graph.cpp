@@ -22,7 +22,6 @@ std::vector<Primitive> BeliefGraph::primitives(StateId state) const {
   for (std::size_t i = 0; i < attractors_.goals.size(); ++i) {
     if (const auto to_goal = direct(state, i)) all.push_back(*to_goal);
   }
-  std::erase_if(all, [&](const Primitive& p) { return refused_.contains({state, p.label}); });
   return all;
 }
 
@@ -40,8 +39,6 @@ std::vector<Edge> BeliefGraph::successors(StateId state) {
   }
   return edges;
 }
-
-void BeliefGraph::refuse(StateId state, int label) { refused_.emplace(state, label); }
 
 Vector6 BeliefGraph::displacement(StateId state, int label) const {
   for (const Primitive& primitive : steps_) {

@@ -3,8 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "planner/attractors.h"
@@ -15,7 +13,7 @@
 namespace tenon::planner {
 
 /// Grows as it is asked. Keeps its states, and the engine its rollouts, from one search to the
-/// next; refused edges stay refused. One thread at a time.
+/// next. One thread at a time.
 class BeliefGraph final : public SearchGraph {
  public:
   /// task and succ must outlive this.
@@ -29,11 +27,7 @@ class BeliefGraph final : public SearchGraph {
   }
   [[nodiscard]] double heuristic(std::size_t v, StateId state) const override;
 
-  /// The edge does not exist: certification contradicted it.
-  void refuse(StateId state, int label);
-
   [[nodiscard]] std::size_t size() const { return beliefs_.size(); }
-  [[nodiscard]] std::size_t refused() const { return refused_.size(); }
   [[nodiscard]] const Belief& belief(StateId state) const { return beliefs_[state]; }
   [[nodiscard]] const BeliefSummary& summary(StateId state) const { return summaries_[state]; }
   /// The displacement of an action in a state.
@@ -52,7 +46,6 @@ class BeliefGraph final : public SearchGraph {
   std::vector<Belief> beliefs_;
   std::vector<BeliefSummary> summaries_;
   std::map<BeliefKey, StateId> numbers_;
-  std::set<std::pair<StateId, int>> refused_;
 };
 
 }  // namespace tenon::planner

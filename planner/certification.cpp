@@ -6,6 +6,7 @@
 #include "planner/text.h"
 #include "shared/base/error.h"
 #include "shared/plan/codec.h"
+#include "shared/task/inserted.h"
 
 namespace tenon::planner {
 namespace {
@@ -36,6 +37,17 @@ std::string difference(const GuardedMove::Result& move, const GuardedMove::Resul
   return {};
 }
 
+/// Which chain ends farthest from the goal, those that are not inserted before all others.
+std::size_t farthest(const std::vector<Chain>& chains, const Task& task) {
+  const auto off = [&](const Chain& chain) {
+    return std::pair(!inserted(task, chain.end()),
+                     distance(chain.end(), task.goal, metric_of(task)));
+  };
+  const auto worst = std::max_element(chains.begin(), chains.end(),
+                                      [&](auto& a, auto& b) { return off(a) < off(b); });
+  return static_cast<std::size_t>(worst - chains.begin());
+}
+
 void keep_earliest(VariantRun& run, const Disagreement& found) {
   if (run.holds || found.step < run.disagreement.step) run.disagreement = found;
   run.holds = false;
@@ -43,7 +55,8 @@ void keep_earliest(VariantRun& run, const Disagreement& found) {
 
 void judge(VariantRun& run, const VariantRun& reference, const Task& task, std::size_t last_step) {
   run.holds = true;
-  const bool same_physics = run.variant.friction == reference.variant.friction;
+  const bool same_physics = run.variant.friction == reference.variant.friction &&
+                            run.variant.oversize_m == reference.variant.oversize_m;
   for (std::size_t p = 0; p < run.chains.size(); ++p) {
     const Chain& chain = run.chains[p];
     const Chain& planned = reference.chains[p];
@@ -62,7 +75,7 @@ void judge(VariantRun& run, const VariantRun& reference, const Task& task, std::
   const BeliefSummary end = summarise(ends(run.chains), task);
   if (at_goal(end, task)) return;
   keep_earliest(run,
-                {last_step, 0,
+                {last_step, farthest(run.chains, task),
                  format("the chain ends beside the goal: farthest particle %.3f mm, u %.3g m^2",
                         1e3 * end.farthest_m, end.uncertainty_m2)});
 }
@@ -88,11 +101,12 @@ double cost_of(const std::vector<Chain>& chains, const Task& task) {
 std::vector<CertificationVariant> certification_variants(const Task& task, PlanMethod method) {
   const std::int64_t step_us = task.rollout_step_us;
   std::vector<CertificationVariant> variants = {
-      {"as planned", std::nullopt, step_us},
-      {"half the integration step", std::nullopt, step_us / 2}};
+      {"as planned", std::nullopt, std::nullopt, step_us},
+      {"half the integration step", std::nullopt, std::nullopt, step_us / 2}};
   if (method == PlanMethod::kMha) {
-    variants.push_back({"lowest friction", task.friction.low, step_us});
-    variants.push_back({"highest friction", task.friction.high, step_us});
+    variants.push_back({"lowest friction", task.friction.low, std::nullopt, step_us});
+    variants.push_back({"highest friction", task.friction.high, std::nullopt, step_us});
+    if (task.oversize_m > 0.0) variants.push_back({"as drawn", std::nullopt, 0.0, step_us});
   }
   return variants;
 }
@@ -166,6 +180,7 @@ Certification certify(std::span<const std::uint8_t> bytes, const Task& task, Rol
     VariantRun& run = certification.runs[i / particles];
     Particle start = belief.particles[i % particles];
     start.physics.friction = run.variant.friction.value_or(start.physics.friction);
+    start.physics.oversize_m = run.variant.oversize_m.value_or(start.physics.oversize_m);
     start.physics.contact_stiffness_Npm = plan.contact_stiffness_Npm;
     run.chains[i % particles] = run_chain(rollout, plan, start, run.variant.step_us);
   });

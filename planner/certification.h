@@ -17,12 +17,14 @@ namespace tenon::planner {
 /// One physics that the chain has to survive.
 struct CertificationVariant {
   std::string name;
-  std::optional<double> friction;  ///< of every particle; empty: each its own
+  std::optional<double> friction;    ///< of every particle; empty: each its own
+  std::optional<double> oversize_m;  ///< likewise
   std::int64_t step_us = 0;
 };
 
-/// As planned, at half the integration step, and at the friction extremes. A baseline, which knows
-/// of no uncertainty, has not planned for the last two.
+/// As planned (with the held part as large as it may be), at half the integration step, at the
+/// friction extremes, and with the part as drawn. A baseline, which knows of no uncertainty, has
+/// planned for the first two alone.
 [[nodiscard]] std::vector<CertificationVariant> certification_variants(const Task& task,
                                                                        PlanMethod method);
 
@@ -52,8 +54,8 @@ struct Certification {
 /// Decodes the bytes and runs the plan's own transitions, for the particles that its method plans
 /// for. A variant holds where every particle's chain is done at the goal, all of them within its
 /// tolerances. At half the integration step every move must also end as in the first variant,
-/// within 0.5 mm or 0.2 degrees; under another friction a move may end otherwise, as long as the
-/// plan goes on from there to the goal.
+/// within 0.5 mm or 0.2 degrees; in other physics a move may end otherwise, as long as the plan goes
+/// on from there to the goal.
 /// @throws InputError where the bytes are no plan, or not one of this task
 [[nodiscard]] Certification certify(std::span<const std::uint8_t> bytes, const Task& task,
                                     RolloutPool& pool);

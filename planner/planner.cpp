@@ -17,6 +17,8 @@ namespace {
 
 // How often the approach distances of a path may be lowered before it runs at contact speed.
 constexpr int kSpeedAttempts = 2;
+// A chain that stays this close to the search's particles has done as they did.
+constexpr double kForeseen_m = 1e-4;
 
 std::string where(const Vector3& p) { return format("(%.4f, %.4f, %.4f) m", p.x(), p.y(), p.z()); }
 
@@ -61,28 +63,29 @@ class Planning {
     report_.method = options_.method;
     const std::string collision = start_collision(task_, start_, pool_.front());
     if (!collision.empty()) return finish(PlanStatus::kStartInCollision, collision);
-    Belief belief = start_belief(task_, start_, options_.method);
-    for (Particle& particle : belief.particles) {
+    belief_ = start_belief(task_, start_, options_.method);
+    for (Particle& particle : belief_.particles) {
       particle.physics.contact_stiffness_Npm = options_.assumptions.contact_stiffness_Npm;
     }
-    if (at_goal(summarise(belief, task_), task_)) {
+    if (at_goal(summarise(belief_, task_), task_)) {
       return finish(PlanStatus::kAlreadyAtGoal,
                     "start '" + start_.name + "' is already within the goal's tolerances");
     }
-    Attractors attractors = timed(now_s_, report_.times.attractors_s, [&] {
-      return find_attractors(task_, belief, long_succ_, pool_.front());
-    });
-    if (is_baseline()) attractors.guides.clear();
-    report_.attractors = attractors.guides.size();
-    BeliefGraph graph(task_, belief, std::move(attractors), succ_);
+    attractors_ = timed(now_s_, report_.times.attractors_s,
+                        [&] { return find_attractors(task_, belief_, long_succ_, pool_.front()); });
+    if (is_baseline()) attractors_.guides.clear();
+    report_.attractors = attractors_.guides.size();
+    graph_.emplace(task_, belief_, attractors_, succ_);
     for (std::size_t round = 0; round < options_.rounds_max; ++round) {
-      if (!search(graph)) return report_with_counters(graph);
-      if (try_path(graph)) return report_with_counters(graph);
+      if (!search()) return report_with_counters();
+      const std::optional<Refutation> refutation = try_path();
+      if (!refutation) return report_with_counters();
+      learn(*refutation);
     }
     finish(PlanStatus::kNotCertified,
            format("every one of %zu paths was refuted, the last one: ", options_.rounds_max) +
                report_.refusals.back());
-    return report_with_counters(graph);
+    return report_with_counters();
   }
 
  private:
@@ -97,26 +100,26 @@ class Planning {
     return report_;
   }
 
-  PlanReport report_with_counters(const BeliefGraph& graph) {
-    report_.states = graph.size();
+  PlanReport report_with_counters() {
+    report_.states = graph_->size();
     report_.search_moves = succ_.counters();
     report_.attractor_moves = long_succ_.counters();
     return std::move(report_);
   }
 
   /// False where there is no path; the report says why.
-  bool search(BeliefGraph& graph) {
+  bool search() {
     report_.search = timed(now_s_, report_.times.search_s, [&] {
       const SearchParameters parameters{task_.w1, task_.w2, options_.expansions_max};
       const auto stop = [&] { return out_of_time(); };
       return options_.method == PlanMethod::kContactGreedy
-                 ? contact_greedy_search(graph, parameters, stop)
-                 : mha_search(graph, parameters, stop);
+                 ? contact_greedy_search(*graph_, parameters, stop)
+                 : mha_search(*graph_, parameters, stop);
     });
     report_.expansions += report_.search.expanded.size();
     if (report_.search.has_path) return true;
     const std::string after =
-        format("%zu expansions and %zu refuted edges", report_.expansions, graph.refused());
+        format("%zu expansions and %zu refuted paths", report_.expansions, report_.refusals.size());
     if (report_.search.status == SearchStatus::kStopped) {
       const bool late = out_of_time();
       finish(late ? PlanStatus::kTimeLimit : PlanStatus::kExpansionLimit,
@@ -131,56 +134,108 @@ class Planning {
     return false;
   }
 
-  /// Certifies and validates the path; true ends the planning with a plan, false refuses an edge.
-  bool try_path(BeliefGraph& graph) {
+  /// What speaks against a path.
+  struct Refutation {
+    Chain chain;
+    std::optional<std::size_t> step;  ///< at which the chain went wrong, where that is known
+    std::string why;
+  };
+
+  /// Certifies and validates the path; empty where it became the plan.
+  std::optional<Refutation> try_path() {
     std::vector<Vector6> displacements;
     for (const PathEdge& edge : report_.search.path) {
-      displacements.push_back(graph.displacement(edge.from, edge.label));
+      displacements.push_back(graph_->displacement(edge.from, edge.label));
     }
     Plan slow = draft_plan(task_, start_, options_.assumptions, displacements);
     slow.method = options_.method;
     Certification at_contact_speed = certified(slow);
-    if (const VariantRun* refuting = at_contact_speed.refuting()) {
-      refuse(graph, refuting->disagreement.step,
-             refuting->variant.name + ", " + refuting->disagreement.why);
-      return false;
-    }
+    if (!at_contact_speed.holds()) return refutation_of(at_contact_speed);
     if (is_baseline()) {
       Validation validation = validated(slow);
-      complete(graph, slow, std::move(at_contact_speed), std::move(validation));
-      return true;
+      complete(slow, std::move(at_contact_speed), std::move(validation));
+      return std::nullopt;
     }
     std::vector<double> distances_m =
         slow_from(slow, good_chains(at_contact_speed, {}), task_.particle_sigmas);
     for (int attempt = 0; attempt < kSpeedAttempts && any_fast(distances_m); ++attempt) {
-      if (try_speeds(graph, with_slow_from(slow, distances_m), distances_m)) return true;
+      if (!try_speeds(with_slow_from(slow, distances_m), distances_m)) return std::nullopt;
     }
     const std::vector<double> none(distances_m.size(), 0.0);
-    if (try_speeds(graph, with_slow_from(slow, none), distances_m)) return true;
-    refuse(graph, left_at_, "at contact speed, a draw within the particles' reach missed the goal");
-    return false;
+    return try_speeds(with_slow_from(slow, none), distances_m);
   }
 
   /// Completes the plan where it holds at its speeds; otherwise lowers the distances, to be tried
   /// next. At contact speed throughout there is nothing to lower.
-  bool try_speeds(const BeliefGraph& graph, const Plan& plan, std::vector<double>& distances_m) {
+  std::optional<Refutation> try_speeds(const Plan& plan, std::vector<double>& distances_m) {
     Certification certification = certified(plan);
     if (!certification.holds()) {
-      left_at_ = certification.refuting()->disagreement.step;
       distances_m.assign(distances_m.size(), 0.0);
-      return false;
+      return refutation_of(certification);
     }
     Validation validation = validated(plan);
-    if (const auto step = left_at(plan, certification, validation)) {
-      left_at_ = *step;
+    for (const Draw& draw : validation.draws) {
+      if (draw.at_goal || draw.mahalanobis > task_.particle_sigmas) continue;
       distances_m.assign(distances_m.size(), 0.0);
-      return false;
+      return Refutation{draw.chain, std::nullopt,
+                        format("a draw %.2f sigma out missed the goal", draw.mahalanobis)};
     }
-    if (shorten(plan, validation, distances_m)) return false;
+    if (shorten(plan, validation, distances_m)) {
+      return Refutation{{}, std::nullopt, "a draw met a contact before the tool was slow"};
+    }
     const std::vector<Chain> good = good_chains(certification, validation);
-    complete(graph, with_envelopes(plan, task_, good), std::move(certification),
-             std::move(validation));
-    return true;
+    complete(with_envelopes(plan, task_, good), std::move(certification), std::move(validation));
+    return std::nullopt;
+  }
+
+  static Refutation refutation_of(const Certification& certification) {
+    const VariantRun& run = *certification.refuting();
+    Refutation refutation{run.chains[run.disagreement.particle], std::nullopt,
+                          run.variant.name + ", " + format("step %zu: ", run.disagreement.step) +
+                              run.disagreement.why};
+    // The same particle in the same physics: the step itself cannot be relied on.
+    if (&run != &certification.runs.front()) refutation.step = run.disagreement.step;
+    return refutation;
+  }
+
+  /// A chain from a start that the search did not know of makes that start a particle. Otherwise
+  /// the search was wrong about a move, and does without it.
+  void learn(const Refutation& refutation) {
+    std::vector<Particle>& particles = belief_.particles;
+    Particle start = refutation.chain.start;
+    start.physics.contact_stiffness_Npm = options_.assumptions.contact_stiffness_Npm;
+    const auto known = std::find_if(particles.begin(), particles.end(),
+                                    [&](const Particle& p) { return same_start(p, start); });
+    if (known == particles.end()) {
+      particles.push_back(start);
+      graph_.emplace(task_, belief_, attractors_, succ_);
+      report_.refusals.push_back(refutation.why + "; it becomes a particle");
+      return;
+    }
+    const auto particle = static_cast<std::size_t>(known - particles.begin());
+    const std::size_t step = refutation.step.value_or(departure(refutation.chain, particle));
+    const PathEdge& edge = report_.search.path[step];
+    succ_.refuse(graph_->belief(edge.from).particles[particle],
+                 graph_->displacement(edge.from, edge.label));
+    report_.refusals.push_back(refutation.why + format("; its move in step %zu is refused", step));
+  }
+
+  static bool same_start(const Particle& a, const Particle& b) {
+    return a.pose == b.pose && a.physics == b.physics;
+  }
+
+  /// The step in which a chain leaves what the search had foreseen for its particle; the last one
+  /// where it does not.
+  [[nodiscard]] std::size_t departure(const Chain& chain, std::size_t particle) const {
+    for (std::size_t i = 0; i < chain.moves.size(); ++i) {
+      const PathEdge& edge = report_.search.path[chain.steps[i]];
+      const Particle& foreseen = graph_->belief(edge.to).particles[particle];
+      if (chain.moves[i].signature != foreseen.signature ||
+          displacement_between(foreseen.pose, chain.moves[i].pose).norm() > kForeseen_m) {
+        return chain.steps[i];
+      }
+    }
+    return chain.steps.back();
   }
 
   static bool any_fast(const std::vector<double>& distances_m) {
@@ -225,19 +280,6 @@ class Planning {
     return chains;
   }
 
-  /// Where the first draw that should have reached the goal left the way of those that did; empty
-  /// where all did.
-  std::optional<std::size_t> left_at(const Plan& plan, const Certification& certification,
-                                     const Validation& validation) const {
-    const Plan judged = with_envelopes(plan, task_, good_chains(certification, validation));
-    for (const Draw& draw : validation.draws) {
-      if (draw.at_goal || draw.mahalanobis > task_.particle_sigmas) continue;
-      const std::size_t move = first_deviation(judged, draw.chain);
-      return move < draw.chain.steps.size() ? draw.chain.steps[move] : plan.steps.size() - 1;
-    }
-    return std::nullopt;
-  }
-
   /// True where a draw met a contact before the tool was slow; the distance is then shortened.
   static bool shorten(const Plan& plan, const Validation& validation,
                       std::vector<double>& distances_m) {
@@ -253,14 +295,7 @@ class Planning {
     return shortened;
   }
 
-  void refuse(BeliefGraph& graph, std::size_t step, const std::string& why) {
-    const PathEdge& edge = report_.search.path[step];
-    graph.refuse(edge.from, edge.label);
-    report_.refusals.push_back(format("step %zu: ", step) + why);
-  }
-
-  void complete(const BeliefGraph& graph, Plan plan, Certification certification,
-                Validation validation) {
+  void complete(Plan plan, Certification certification, Validation validation) {
     plan.cost = certification.cost;
     // The bound speaks of the searched graph; the chain's own cost may differ a little from g.
     const double bound = report_.search.bound * certification.cost / report_.search.cost;
@@ -275,7 +310,6 @@ class Planning {
     }
     report_.certification = std::move(certification);
     report_.validation = std::move(validation);
-    report_.states = graph.size();
     finish(PlanStatus::kPlanned, "");
   }
 
@@ -287,7 +321,9 @@ class Planning {
   RolloutPool pool_;
   SuccessorEngine succ_;
   SuccessorEngine long_succ_;
-  std::size_t left_at_ = 0;  // step at which the last plan tried did not hold
+  Belief belief_;  // the method's particles, and the starts that refuted a path
+  Attractors attractors_;
+  std::optional<BeliefGraph> graph_;
   PlanReport report_;
 };
 

@@ -15,11 +15,12 @@ SuccessorEngine::SuccessorEngine(RolloutPool& pool, const MoveParameters& move,
                                  std::int64_t step_us)
     : pool_(pool), move_(move), step_us_(step_us) {}
 
-SuccessorEngine::Key SuccessorEngine::key_of(const Particle& particle, const Primitive& primitive) {
+SuccessorEngine::Key SuccessorEngine::key_of(const Particle& particle,
+                                             const Vector6& displacement) {
   Key key;
   append_cell(particle, kCoincident_m, kCoincident_rad, key);
   for (int axis = 0; axis < 6; ++axis) {
-    key.push_back(std::bit_cast<std::int64_t>(primitive.displacement[axis]));
+    key.push_back(std::bit_cast<std::int64_t>(displacement[axis]));
   }
   return key;
 }
@@ -32,13 +33,17 @@ SuccessorEngine::End SuccessorEngine::simulate(Rollout& rollout, const Job& job)
   return Particle{result.move.pose, result.move.signature, job.particle.physics};
 }
 
+void SuccessorEngine::refuse(const Particle& particle, const Vector6& displacement) {
+  memo_[key_of(particle, displacement)].reset();
+}
+
 std::vector<std::optional<Belief>> SuccessorEngine::successors(
     const Belief& belief, std::span<const Primitive> primitives) {
   std::vector<Job> jobs;
   std::vector<const End*> ends;  // by primitive, then particle; nodes of a map stay where they are
   for (const Primitive& primitive : primitives) {
     for (const Particle& particle : belief.particles) {
-      const auto [entry, fresh] = memo_.try_emplace(key_of(particle, primitive));
+      const auto [entry, fresh] = memo_.try_emplace(key_of(particle, primitive.displacement));
       ends.push_back(&entry->second);
       if (fresh) jobs.push_back({particle, primitive.displacement, &entry->second});
     }

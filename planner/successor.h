@@ -32,6 +32,10 @@ class SuccessorEngine {
   [[nodiscard]] std::vector<std::optional<Belief>> successors(
       const Belief& belief, std::span<const Primitive> primitives);
 
+  /// The move does not exist any more, as if its rollout had failed: a finer simulation contradicts
+  /// it.
+  void refuse(const Particle& particle, const Vector6& displacement);
+
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
  private:
@@ -43,7 +47,7 @@ class SuccessorEngine {
     End* end = nullptr;
   };
 
-  [[nodiscard]] static Key key_of(const Particle& particle, const Primitive& primitive);
+  [[nodiscard]] static Key key_of(const Particle& particle, const Vector6& displacement);
   [[nodiscard]] End simulate(Rollout& rollout, const Job& job) const;
 
   RolloutPool& pool_;

@@ -107,7 +107,7 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
                  plan.start_name.c_str(), plan.task_name.c_str(), to_string(plan.method),
                  plan.steps.size(), report.bytes.size());
   text += cost_text(plan);
-  text += format("search: %zu expansions, %zu states, %zu attractors, %zu refuted edges\n",
+  text += format("search: %zu expansions, %zu states, %zu attractors, %zu refuted paths\n",
                  report.expansions, report.states, report.attractors, report.refusals.size());
   text += format(
       "simulated moves: %llu attractors, %llu search (%llu known), %llu certification, "

@@ -43,6 +43,7 @@ DrawnStart draw_start(NormalDraws& random, const Plan& plan, const Task& task, c
   drawn.particle.physics.friction =
       task.friction.low + random.uniform() * (task.friction.high - task.friction.low);
   drawn.particle.physics.contact_stiffness_Npm = plan.contact_stiffness_Npm;
+  if (task.oversize_m > 0.0) drawn.particle.physics.oversize_m = random.uniform() * task.oversize_m;
   return drawn;
 }
 
@@ -76,7 +77,8 @@ std::vector<DrawnStart> rim_starts(const Plan& plan, const Task& task, const Sta
         displaced(start.pose, reach_sigmas(task) * direction.cwiseProduct(start.sigma));
     if (rollout.in_collision(pose)) continue;
     for (const double friction : {task.friction.low, task.friction.high}) {
-      starts.push_back({{pose, {}, {friction, plan.contact_stiffness_Npm}}, reach_sigmas(task)});
+      starts.push_back({{pose, {}, {friction, plan.contact_stiffness_Npm, task.oversize_m}},
+                        reach_sigmas(task)});
     }
   }
   return starts;

@@ -231,12 +231,13 @@ void read_search(const Value& value, Task& task) {
 }
 
 void read_physics(const Value& value, Task& task) {
-  const Map map(value, {"friction", "contact_stiffness_Npm", "rollout_step_s"});
+  const Map map(value, {"friction", "contact_stiffness_Npm", "oversize_m", "rollout_step_s"});
   const Map friction(map.at("friction"), {"low", "nominal", "high"});
   task.friction.low = friction.number("low", {0.0, 2.0});
   task.friction.nominal = friction.number("nominal", {task.friction.low, 2.0});
   task.friction.high = friction.number("high", {task.friction.nominal, 2.0});
   task.contact_stiffness_Npm = map.number("contact_stiffness_Npm", {1e2, 1e8});
+  map.optional_number("oversize_m", {0.0, 0.01}, task.oversize_m);
 
   const auto step = map.find("rollout_step_s");
   if (!step) return;

@@ -15,6 +15,7 @@ namespace tenon {
 struct PhysicalParameters {
   double friction = 0.3;
   double contact_stiffness_Npm = 5e4;
+  double oversize_m = 0.0;  ///< by which every size of the held part exceeds what is drawn
 
   friend bool operator==(const PhysicalParameters&, const PhysicalParameters&) = default;
 };

@@ -40,6 +40,7 @@ Scene::Scene(const std::vector<Shape>& held, const std::vector<Shape>& environme
   for (const Shape& shape : held) {
     held_names_.push_back(shape.name);
     held_offsets_.push_back(shape.pose);
+    held_sizes_m_.push_back(shape.size_m);
     held_.push_back(make_geom(shape));
   }
   for (const Shape& shape : environment) {
@@ -63,6 +64,19 @@ void Scene::attach(dBodyID body, const Pose& X_BP) {
     dGeomSetOffsetPosition(held_[i], offset.position_m.x(), offset.position_m.y(),
                            offset.position_m.z());
     dGeomSetOffsetQuaternion(held_[i], raw);
+  }
+}
+
+void Scene::set_oversize(double oversize_m) {
+  if (oversize_m == oversize_m_) return;
+  oversize_m_ = oversize_m;
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    const Vector3 size_m = held_sizes_m_[i] + Vector3::Constant(oversize_m);
+    if (dGeomGetClass(held_[i]) == dBoxClass) {
+      dGeomBoxSetLengths(held_[i], size_m.x(), size_m.y(), size_m.z());
+    } else {
+      dGeomCylinderSetParams(held_[i], 0.5 * size_m.x(), size_m.z());
+    }
   }
 }
 
@@ -91,12 +105,12 @@ Scene::Contacts Scene::collide(OdeWorld& world, double step_s, const Surface& su
 }
 
 void Scene::make_joints(OdeWorld& world, double step_s, const Surface& surface) {
-  const std::vector<double> sharing = sharers(points_);
+  const std::vector<double> share = shares(points_);
   feedback_.resize(points_.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
     // A face's stiffness and damping, shared out; ODE's erp and cfm are an implicit spring.
-    const double spring = step_s * surface.stiffness_Npm / sharing[i];
-    const double damper = surface.relaxation_s * surface.stiffness_Npm / sharing[i];
+    const double spring = step_s * surface.stiffness_Npm * share[i];
+    const double damper = surface.relaxation_s * surface.stiffness_Npm * share[i];
     dContact contact{};
     contact.geom = points_[i];
     contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactMotionN;

@@ -36,6 +36,9 @@ class Scene {
   /// Hangs the held shapes on a body. @param X_BP the tool frame in the body's frame
   void attach(dBodyID body, const Pose& X_BP = {});
 
+  /// Every size of the held part as drawn and this much more.
+  void set_oversize(double oversize_m);
+
   struct Contacts {
     std::size_t points = 0;
     double depth_max_m = 0.0;
@@ -71,6 +74,8 @@ class Scene {
   std::vector<std::string> environment_names_;
   std::vector<dGeomID> held_;
   std::vector<Pose> held_offsets_;
+  std::vector<Vector3> held_sizes_m_;  // as drawn
+  double oversize_m_ = 0.0;
   std::vector<dGeomID> environment_;
   std::vector<dContactGeom> points_;      // of the last collide(), thinned out
   std::vector<dJointFeedback> feedback_;  // one a point

@@ -40,6 +40,7 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
   const std::uint64_t messages_before = ode_messages();
   p.tool.set_compliance(move.compliance);
   p.tool.place(particle.pose);
+  p.scene.set_oversize(particle.physics.oversize_m);
 
   GuardedMove guarded(move, particle.signature);
   GuardedMove::Input input;
@@ -75,6 +76,7 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
 
 bool OdeRollout::in_collision(const Pose& tool_pose) {
   physics_->tool.place(tool_pose);
+  physics_->scene.set_oversize(0.0);
   return physics_->scene.overlap_m() > kCollision_m;
 }
 

@@ -61,6 +61,24 @@ TEST(Planner, ThreadsDoNotChangeAByte) {
   EXPECT_EQ(one, planned(task, room(), five).bytes);
 }
 
+TEST(Planner, AStartThatRefutesAPathBecomesAParticle) {
+  // No particle pushes against the ledge; one draw in five does, and would end 50 mm beside the
+  // goal.
+  WallRollout::World world = room();
+  world.ledge_m = 0.05;
+  world.ledge_from_y_m = -0.095;
+  world.ledge_to_y_m = -0.065;
+  const Task task = room_task();
+  const PlanReport report = planned(task, world);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+  EXPECT_EQ(report.validation.at_goal_within(2.0), report.validation.within(2.0));
+  ASSERT_FALSE(report.refusals.empty());
+  for (const std::string& refusal : report.refusals) {
+    EXPECT_NE(refusal.find("missed the goal; it becomes a particle"), std::string::npos) << refusal;
+  }
+  EXPECT_LE(report.refusals.size(), 2U);
+}
+
 TEST(Planner, AnOutcomeThatNoDrawHadLeadsToFail) {
   const PlanReport report = planned(room_task());
   ASSERT_EQ(report.status, PlanStatus::kPlanned);

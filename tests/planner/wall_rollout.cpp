@@ -23,12 +23,15 @@ RolloutResult WallRollout::simulate(const Particle& particle, const MoveParamete
       signature.bits &= static_cast<std::uint16_t>(~ContactSignature::bit(axis, environment));
     }
   }
+  Vector3 low_m = world_.low_m;
+  const double y_m = particle.pose.position_m.y();
+  if (y_m > world_.ledge_from_y_m && y_m < world_.ledge_to_y_m) low_m.x() += world_.ledge_m;
   // The nearest wall along the way stops everything.
   double part = 1.0;
   int stopping_axis = -1;
   for (int axis = 0; axis < 3; ++axis) {
     if (way_m[axis] == 0.0) continue;
-    const double wall_m = way_m[axis] > 0.0 ? world_.high_m[axis] : world_.low_m[axis];
+    const double wall_m = way_m[axis] > 0.0 ? world_.high_m[axis] : low_m[axis];
     const double room = (wall_m - particle.pose.position_m[axis]) / way_m[axis];
     if (room < part) {
       part = std::max(0.0, room);
@@ -43,7 +46,7 @@ RolloutResult WallRollout::simulate(const Particle& particle, const MoveParamete
     result.move.outcome = Outcome::kContact;
     const bool up = way_m[stopping_axis] > 0.0;
     result.move.pose.position_m[stopping_axis] =
-        up ? world_.high_m[stopping_axis] : world_.low_m[stopping_axis];
+        up ? world_.high_m[stopping_axis] : low_m[stopping_axis];
     signature.bits |= ContactSignature::bit(stopping_axis, up ? -1 : +1);
     result.touching = {up ? "point-high" : "point-low"};
   }

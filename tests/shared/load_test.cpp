@@ -39,6 +39,7 @@ search: {w1: 3, w2: 1.5}
 physics:
   friction: {low: 0.1, nominal: 0.3, high: 0.6}
   contact_stiffness_Npm: 5e4
+  oversize_m: 2.5e-4
   rollout_step_s: 0.002
 )";
 
@@ -99,6 +100,7 @@ TEST(LoadTask, ReadsEveryValue) {
   EXPECT_EQ(task.w2, 1.5);
   EXPECT_EQ(task.distance_weight_per_m, Task{}.distance_weight_per_m);
   EXPECT_EQ(task.friction.high, 0.6);
+  EXPECT_EQ(task.oversize_m, 2.5e-4);
   EXPECT_EQ(task.rollout_step_us, 2000);
 }
 
@@ -170,8 +172,10 @@ TEST(LoadTask, RefusesEachBadLineWithItsPlace) {
        ":19: compliance.axes: lacks the search coordinate rz: a rigid axis feels no contact"},
       {"w1: 3", "w1: 0.9", ":20: search.w1 = 0.9, must be in [1, 1000]"},
       {"high: 0.6", "high: 0.2", ":22: physics.friction.high = 0.2, must be in [0.3, 2]"},
+      {"oversize_m: 2.5e-4", "oversize_m: 0.02",
+       ":24: physics.oversize_m = 0.02, must be in [0, 0.01]"},
       {"rollout_step_s: 0.002", "rollout_step_s: 0.006",
-       ":24: physics.rollout_step_s = 0.006, must be in [0.0001, 0.005]"},
+       ":25: physics.rollout_step_s = 0.006, must be in [0.0001, 0.005]"},
       {"coordinates: [x, rz]", "coordinates: [x, rz",
        ":3: is not YAML: end of sequence flow not found"},
       {"physics:\n", "---\n", ": must hold one YAML document, holds 2"},

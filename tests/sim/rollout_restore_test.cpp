@@ -121,6 +121,29 @@ TEST(RolloutRestore, AWorldThatDidOtherThingsRepeatsEveryMove) {
   }
 }
 
+TEST(RolloutRestore, AnOversizedPartIsThatParticlesAlone) {
+  // 2 mm of clearance: a peg that is 1 mm oversize goes in, one of 3 mm does not, and neither
+  // changes the world for the next.
+  OdeRollout rollout(round_peg());
+  MoveParameters down;
+  down.displacement.z() = -0.03;
+  const auto end = [&](double oversize_m) {
+    Particle particle;
+    particle.pose.position_m.z() = 0.01;
+    particle.physics.oversize_m = oversize_m;
+    return rollout.simulate(particle, down, 2000, nullptr).move;
+  };
+  EXPECT_EQ(end(0.0).outcome, Outcome::kReached);
+  EXPECT_EQ(end(0.003).outcome, Outcome::kContact);
+  EXPECT_GT(end(0.003).pose.position_m.z(), 0.0);
+  EXPECT_EQ(end(0.001).outcome, Outcome::kReached);
+  EXPECT_EQ(end(0.0).pose.position_m.z(), end(0.001).pose.position_m.z());
+  Pose tilted;
+  tilted.position_m = {0.0007, 0.0, -0.01};
+  (void)end(0.003);
+  EXPECT_FALSE(rollout.in_collision(tilted)) << "a start is free as drawn";
+}
+
 TEST(RolloutRestore, OtherThreadsRepeatEveryMove) {
   const Task task = round_peg();
   const std::vector<Move> moves = uninterrupted(task, 5, 40);
