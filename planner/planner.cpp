@@ -117,6 +117,7 @@ class Planning {
                  : mha_search(*graph_, parameters, stop);
     });
     report_.expansions += report_.search.expanded.size();
+    if (report_.refusals.empty()) report_.expansions_first = report_.expansions;
     if (report_.search.has_path) return true;
     const std::string after =
         format("%zu expansions and %zu refuted paths", report_.expansions, report_.refusals.size());

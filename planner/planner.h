@@ -53,9 +53,10 @@ struct PlanReport {
   PlanStatus status = PlanStatus::kExhausted;
   std::string reason;  ///< one line where it is not kPlanned
   std::optional<Plan> plan;
-  std::vector<std::uint8_t> bytes;  ///< of the plan, as a file has them
-  SearchResult search;              ///< the last one
-  std::size_t expansions = 0;       ///< of all searches
+  std::vector<std::uint8_t> bytes;   ///< of the plan, as a file has them
+  SearchResult search;               ///< the last one
+  std::size_t expansions = 0;        ///< of all searches
+  std::size_t expansions_first = 0;  ///< of the first of them, before anything was refuted
   std::size_t attractors = 0;
   std::size_t states = 0;
   std::vector<std::string> refusals;  ///< what was refuted, and why

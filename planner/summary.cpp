@@ -107,8 +107,11 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
                  plan.start_name.c_str(), plan.task_name.c_str(), to_string(plan.method),
                  plan.steps.size(), report.bytes.size());
   text += cost_text(plan);
-  text += format("search: %zu expansions, %zu states, %zu attractors, %zu refuted paths\n",
-                 report.expansions, report.states, report.attractors, report.refusals.size());
+  text += format(
+      "search: %zu expansions (%zu for the first path), %zu states, %zu attractors, "
+      "%zu refuted paths\n",
+      report.expansions, report.expansions_first, report.states, report.attractors,
+      report.refusals.size());
   text += format(
       "simulated moves: %llu attractors, %llu search (%llu known), %llu certification, "
       "%llu validation\n",
@@ -138,6 +141,7 @@ std::string statistics_json(const PlanReport& report, const Task& task) {
   json["attractors"] = report.attractors;
   json["states"] = report.states;
   json["expansions"] = report.expansions;
+  json["expansions_first"] = report.expansions_first;
   json["refusals"] = report.refusals;
   json["adapted"] = report.adapted;
   json["moves"] = {{"attractors", moves(report.attractor_moves)},

@@ -17,6 +17,7 @@ struct Figures {
   double check_s = 0.0;  ///< certification and validation, of which the paper has none
   double cost = 0.0;
   double nodes = 0.0;  ///< of the path, start and goal included
+  double expansions_first = 0.0;
   double expansions = 0.0;
   double moves = 0.0;  ///< simulated until there is a path
   double check_moves = 0.0;

@@ -27,6 +27,8 @@ constexpr std::array kColumns = {
     kTime,
     Column{"cost", "cost", 6, 1.0, 0, 0, &Figures::cost, &PaperRow::cost},
     Column{"nodes", "nodes", 5, 1.0, 0, 1, &Figures::nodes, &PaperRow::nodes},
+    Column{"expansions_first", "first path", 5, 1.0, 0, 1, &Figures::expansions_first,
+           &PaperRow::expansions},
     Column{"expansions", "expansions", 5, 1.0, 0, 1, &Figures::expansions, &PaperRow::expansions},
     kMoves,
     Column{"error_mean_m", "error mm", 5, 1e3, 1, 1, &Figures::error_mean_m,
