@@ -187,6 +187,15 @@ class Report {
   }
 
   /// Filled where the plane through the goal cuts it; in outline what stands elsewhere.
+  /// The nominal start, and wherever a step takes a particle.
+  [[nodiscard]] std::vector<Vector3> tools_m() const {
+    std::vector<Vector3> tools_m = {plan_.start.position_m};
+    for (const Chain& chain : chains_) {
+      for (const GuardedMove::Result& move : chain.moves) tools_m.push_back(move.pose.position_m);
+    }
+    return tools_m;
+  }
+
   [[nodiscard]] std::string environment(const Canvas& canvas, const View& view,
                                         const std::set<std::string>& touched) const {
     double depth_m = plan_.goal.position_m[view.along];
@@ -222,7 +231,7 @@ class Report {
   }
 
   [[nodiscard]] std::string overview(const View& view) const {
-    const Canvas canvas(view, task_, plan_.start.position_m);
+    const Canvas canvas(view, task_, tools_m());
     std::string svg = canvas.open(1060) + environment(canvas, view, {});
     svg += part_at(canvas, plan_.start, "fill='#1f77b4' fill-opacity='.12' stroke='#1f77b4'");
     svg += part_at(canvas, plan_.goal, "fill='#2ca02c' fill-opacity='.2' stroke='#2ca02c'");
@@ -366,7 +375,7 @@ class Report {
     for (std::size_t step = 0; step < steps; ++step) {
       html += "<figure>";
       for (const View& view : views_of(plan_.coordinates)) {
-        html += frame(Canvas(view, task_, plan_.start.position_m), view, step);
+        html += frame(Canvas(view, task_, tools_m()), view, step);
       }
       const std::set<std::string> touched = touched_after(step);
       html += format("<figcaption>step %zu: ", step) + displacement_text(step) + "<br>" +

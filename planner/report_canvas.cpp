@@ -76,17 +76,20 @@ std::vector<View> views_of(CoordinateMask coordinates) {
   return {above, side};
 }
 
-Canvas::Canvas(const View& view, const Task& task, const Vector3& start_m) : view_(view) {
+Canvas::Canvas(const View& view, const Task& task, const std::vector<Vector3>& tools_m)
+    : view_(view) {
   for (const Shape& shape : task.environment) {
     for (const Vector3& corner : prism_of(shape, Pose{}).corners) grow(corner);
   }
-  for (const Vector3& tool_m : {start_m, task.goal.position_m}) {
+  const auto hold = [&](const Vector3& tool_m) {
     for (const Shape& shape : task.held) {
       for (const Vector3& corner : prism_of(shape, Pose{tool_m, task.goal.orientation}).corners) {
         grow(corner);
       }
     }
-  }
+  };
+  hold(task.goal.position_m);
+  for (const Vector3& tool_m : tools_m) hold(tool_m);
   const Point rim = Point::Constant(kRim * (high_.x() - low_.x()));
   low_ -= rim;
   high_ += rim;

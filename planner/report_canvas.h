@@ -23,8 +23,8 @@ struct View {
 /// Styles are SVG attributes. Widths and radii are in thousandths of the picture's width.
 class Canvas {
  public:
-  /// Holds the environment, the start and the goal.
-  Canvas(const View& view, const Task& task, const Vector3& start_m);
+  /// Holds the environment, and the held part at the goal and wherever these tools are.
+  Canvas(const View& view, const Task& task, const std::vector<Vector3>& tools_m);
 
   [[nodiscard]] std::string open(int width_px) const;
 

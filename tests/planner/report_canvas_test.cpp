@@ -38,7 +38,7 @@ Shape box(const Vector3& size_m, const Vector3& at_m) {
 Canvas from_the_side() {
   Task task = room_task();
   task.environment = {box({1.0, 1.0, 1.0}, Vector3::Zero())};
-  return {views_of(0b101).front(), task, Vector3::Zero()};
+  return {views_of(0b101).front(), task, {Vector3::Zero()}};
 }
 
 std::size_t corners(const std::string& polygon) {
@@ -81,6 +81,14 @@ TEST(ReportCanvas, APictureHoldsEverythingWithARim) {
   EXPECT_NE(from_the_side().open(200).find("viewBox='-520.00 -520.00 1040.00 1040.00'"),
             std::string::npos)
       << from_the_side().open(200);
+}
+
+TEST(ReportCanvas, APictureHoldsThePartWhereverItGoes) {
+  Task task = room_task();
+  task.held = {box({0.2, 0.2, 0.2}, Vector3::Zero())};
+  const Canvas canvas(views_of(0b101).front(), task, {Vector3::Zero(), {-0.73, 0.0, 0.0}});
+  // From -830 mm to the goal at 170 and 100 more: 1100 mm, and 22 on each side.
+  EXPECT_NE(canvas.open(200).find("viewBox='-852.00 "), std::string::npos) << canvas.open(200);
 }
 
 }  // namespace
