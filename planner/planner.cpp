@@ -298,9 +298,7 @@ class Planning {
 
   void complete(Plan plan, Certification certification, Validation validation) {
     plan.cost = certification.cost;
-    // The bound speaks of the searched graph; the chain's own cost may differ a little from g.
-    const double bound = report_.search.bound * certification.cost / report_.search.cost;
-    plan.bound = std::isfinite(bound) ? std::max(1.0, bound) : 0.0;
+    plan.bound = std::isfinite(report_.search.bound) ? report_.search.bound : 0.0;
     plan.draws = static_cast<std::uint32_t>(validation.draws.size());
     plan.draws_at_goal = static_cast<std::uint32_t>(validation.at_goal());
     report_.bytes = encode_plan(plan);
