@@ -61,7 +61,10 @@ for _ in $(seq 100); do
 done
 if [[ -z $port ]]; then
   cat "$output/sim.out" >&2
-  exit 1
+  kill "$sim" 2>/dev/null || true
+  status=0
+  wait "$sim" || status=$?
+  exit $((status == 2 ? 2 : 1))
 fi
 
 echo

@@ -96,7 +96,6 @@ class ControlTask {
   void process_event(Event event);
   [[nodiscard]] double time_in_state_s() const;
   [[nodiscard]] std::int64_t motion_ns() const { return motion_ns_; }
-  [[nodiscard]] const Parameters& task_parameters() const { return parameters_; }
   [[nodiscard]] const ToolKinematics& kinematics() const { return kinematics_; }
   [[nodiscard]] const Supervision& supervision() const { return supervision_; }
   [[nodiscard]] JointCommand& joints() { return joints_; }

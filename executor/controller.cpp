@@ -1,6 +1,5 @@
 #include "executor/controller.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "executor/joint_difference.h"

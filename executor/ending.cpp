@@ -9,16 +9,12 @@ namespace {
 
 const char* wrench_unit(int axis) { return axis < 3 ? "N" : "Nm"; }
 
-std::string joint_name(const Cell& cell, int joint) {
-  const auto i = static_cast<std::size_t>(joint);
-  return joint >= 0 && i < cell.robot.joints.size() ? cell.robot.joints[i].name : "?";
-}
-
-const char* joint_unit(const Cell& cell, int joint) {
-  const auto i = static_cast<std::size_t>(joint);
-  const bool linear = joint >= 0 && i < cell.robot.joints.size() &&
-                      cell.robot.joints[i].kind == Joint::Kind::kPrismatic;
-  return linear ? "m" : "rad";
+Joint joint_of(const Cell& cell, int index) {
+  const auto i = static_cast<std::size_t>(index);
+  if (index >= 0 && i < cell.robot.joints.size()) return cell.robot.joints[i];
+  Joint none;
+  none.name = "?";
+  return none;
 }
 
 std::string during(const Ending& ending) {
@@ -169,23 +165,24 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return format(
           "the tool's %s is at %.4f %s, the plan's start '%s' has it at %.4f, must be "
           "within %.3g: move it there or use --go-to-start",
-          axis_name(e.index), e.value, e.index < 3 ? "m" : "rad", plan.start_name.c_str(), e.wanted,
+          axis_name(e.index), e.value, axis_unit(e.index), plan.start_name.c_str(), e.wanted,
           e.bound);
     case EndReason::kOtherBranch:
-      return "joint " + joint_name(cell, e.index) +
+      return "joint " + joint_of(cell, e.index).name +
              format(
                  " is at %.4f %s, the plan's start '%s' has it at %.4f, must be within %.3g: "
                  "move it there or use --go-to-start",
-                 e.value, joint_unit(cell, e.index), plan.start_name.c_str(), e.wanted, e.bound);
+                 e.value, joint_unit(joint_of(cell, e.index)), plan.start_name.c_str(), e.wanted,
+                 e.bound);
     case EndReason::kTareUnsteady:
       return format(
           "sensor not steady while taring: standard deviation of %s is %.3g %s, at most "
           "%.3g",
           axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
     case EndReason::kTareMoving:
-      return "joint " + joint_name(cell, e.index) +
+      return "joint " + joint_of(cell, e.index).name +
              format(" moved by %.3g %s while taring, at most %.3g", e.value,
-                    joint_unit(cell, e.index), e.bound);
+                    joint_unit(joint_of(cell, e.index)), e.bound);
     case EndReason::kContactOnApproach:
       return format("touched something on the way to the start: %s reads %.3g %s, at most %.3g",
                     axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
@@ -194,13 +191,13 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
              format("the commanded tool pose is out of the robot's reach by %.3g m or rad",
                     e.value);
     case EndReason::kJointLimit:
-      return during(e) + "joint " + joint_name(cell, e.index) +
+      return during(e) + "joint " + joint_of(cell, e.index).name +
              format(" would come to rest at %.6g %s, beyond its limit %.6g", e.value,
-                    joint_unit(cell, e.index), e.bound);
+                    joint_unit(joint_of(cell, e.index)), e.bound);
     case EndReason::kJointSpeed:
-      return during(e) + "joint " + joint_name(cell, e.index) +
-             format(" would move at %.4g %s/s, at most %.4g", e.value, joint_unit(cell, e.index),
-                    e.bound);
+      return during(e) + "joint " + joint_of(cell, e.index).name +
+             format(" would move at %.4g %s/s, at most %.4g", e.value,
+                    joint_unit(joint_of(cell, e.index)), e.bound);
     case EndReason::kForceFault:
       return format("external force %.4g N above force_fault_N = %.4g", e.value, e.bound);
     case EndReason::kTorqueFault:
@@ -222,7 +219,7 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kEnableTimeout:
       return format("the arm was not enabled within %.3g s", e.value);
     case EndReason::kFeedbackMissing:
-      return "joint " + joint_name(cell, e.index) +
+      return "joint " + joint_of(cell, e.index).name +
              format(" did not answer for %.0f cycles in a row, at most %.0f", e.value, e.bound);
     case EndReason::kWrenchMissing:
       return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "executor/controller.h"
@@ -133,6 +134,18 @@ void print_closing(const RunResult& result) {
   if (result.exit_code != 0) std::fprintf(stderr, "tenon-exec: %s\n", result.message.c_str());
 }
 
+std::vector<std::pair<std::string, std::uint64_t>> named(const hw::CanopenArm::Counters& c) {
+  return {{"joint_frames_missing", c.joint_frames_missing},
+          {"wrenches_missing", c.wrenches_missing},
+          {"wrench_halves_torn", c.wrench_halves_torn},
+          {"late_frames", c.late_frames},
+          {"malformed_frames", c.malformed_frames},
+          {"unexpected_frames", c.unexpected_frames},
+          {"emergencies", c.emergencies},
+          {"send_failures", c.send_failures},
+          {"invalid_setpoints", c.invalid_setpoints}};
+}
+
 // To a file, or to standard output for "-"; nowhere where no name is given.
 void write_json(const std::string& file, const std::string& json) {
   if (file == "-") {
@@ -207,7 +220,8 @@ class TaskRun {
   }
 
   /// Tells what came of it, everywhere. @return the exit status
-  int conclude(const RunResult& result) {
+  int conclude(RunResult result) {
+    result.arm_counters = named(arm_.counters());
     telemetry_.publish_summary(result, task_.record());
     print_closing(result);
     if (result.ended_badly()) {

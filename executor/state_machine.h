@@ -14,7 +14,6 @@
 //
 // What is not drawn changes nothing.
 
-#include <cstddef>
 #include <cstdint>
 
 namespace tenon::executor {
@@ -31,7 +30,6 @@ enum class State : std::uint8_t {
   kDisabling = 7,      ///< drives going off, brakes on
   kFinished = 8,
 };
-inline constexpr std::size_t kStateCount = 9;
 [[nodiscard]] const char* to_string(State state);
 
 enum class Event : std::uint8_t {

@@ -39,7 +39,7 @@ CanopenArm::CanopenArm(const Robot& robot, CanBus& bus)
       heartbeat_timeout_ns_(robot.heartbeat_timeout_ms * kNanosecondsPerMillisecond),
       bring_up_(robot) {
   for (std::size_t i = 0; i < joint_count_; ++i) {
-    joints_[i] = JointChannel(robot.joints[i], i);
+    joints_[i] = JointChannel(robot.joints[i]);
     watch_.add(robot.joints[i].node);
   }
   watch_.add(sensor_.node);

@@ -13,9 +13,8 @@ namespace tenon::hw {
 
 using cia402::DriveState;
 
-JointChannel::JointChannel(const Joint& joint, std::size_t index)
+JointChannel::JointChannel(const Joint& joint)
     : node_(joint.node),
-      feedback_cob_id_(joint_feedback_cob_id(index)),
       interpolated_(joint.mode == Joint::Mode::kInterpolatedPosition),
       counts_per_unit_(joint.counts_per_unit),
       zero_counts_(joint.zero_counts),

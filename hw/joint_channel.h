@@ -11,7 +11,6 @@
 //   RPDO1 200h + n: | 0-3 i32 target of the first, counts | 4-7 i32 target of the second |
 //   RPDO2 300h + n: | 0-1 u16 controlword | of each node n, acts when it arrives
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -25,8 +24,7 @@ namespace tenon::hw {
 class JointChannel {
  public:
   JointChannel() = default;
-  /// @param index 0.. in the robot's order
-  JointChannel(const Joint& joint, std::size_t index);
+  explicit JointChannel(const Joint& joint);
 
   /// As after a reset of the drive.
   void reset();
@@ -45,7 +43,6 @@ class JointChannel {
   [[nodiscard]] std::optional<CanFrame> due_controlword_frame();
 
   [[nodiscard]] std::uint8_t node() const { return node_; }
-  [[nodiscard]] std::uint32_t feedback_cob_id() const { return feedback_cob_id_; }
   [[nodiscard]] bool seen() const { return seen_; }  ///< since reset()
   [[nodiscard]] double position() const;             ///< m or rad
   [[nodiscard]] double effort() const;               ///< N or Nm
@@ -58,7 +55,6 @@ class JointChannel {
 
  private:
   std::uint8_t node_ = 0;
-  std::uint32_t feedback_cob_id_ = 0;
   bool interpolated_ = false;
   double counts_per_unit_ = 1.0;
   double zero_counts_ = 0.0;

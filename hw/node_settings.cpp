@@ -1,7 +1,6 @@
 #include "hw/node_settings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>

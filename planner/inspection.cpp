@@ -10,15 +10,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string axis_names(CoordinateMask mask) {
-  std::string names;
-  for (int axis = 0; axis < 6; ++axis) {
-    if ((mask >> axis & 1U) != 0)
-      names += (names.empty() ? "" : " ") + std::string(axis_name(axis));
-  }
-  return names;
-}
-
 Json json_of(const Vector6& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
 
 Json json_of(const Pose& pose) {
@@ -81,15 +72,15 @@ std::string header_text(const Plan& plan, std::size_t bytes) {
                  static_cast<unsigned long long>(plan.task_hash), plan.start_name.c_str(),
                  to_string(plan.method),
                  plan.check_envelopes ? "" : "; no envelopes are checked in execution");
-  text +=
-      format("%zu bytes, %zu steps, %zu parameter sets, coordinates %s\n", bytes, plan.steps.size(),
-             plan.parameter_sets.size(), axis_names(plan.coordinates).c_str());
+  text += format("%zu bytes, %zu steps, %zu parameter set%s, coordinates %s\n", bytes,
+                 plan.steps.size(), plan.parameter_sets.size(),
+                 plan.parameter_sets.size() == 1 ? "" : "s", axis_list(plan.coordinates).c_str());
   text += format("start (%.4f, %.4f, %.4f) m, goal (%.4f, %.4f, %.4f) m within %.1f mm\n",
                  plan.start.position_m.x(), plan.start.position_m.y(), plan.start.position_m.z(),
                  plan.goal.position_m.x(), plan.goal.position_m.y(), plan.goal.position_m.z(),
                  1e3 * plan.goal_tolerance_m);
   text += format("compliance M %g kg, D %g Ns/m, K %g N/m on %s; force limit %g N\n", c.mass_kg,
-                 c.damping_Nspm, c.stiffness_Npm, axis_names(c.compliant_axes).c_str(),
+                 c.damping_Nspm, c.stiffness_Npm, axis_list(c.compliant_axes).c_str(),
                  plan.force_limit_N);
   text += format("made for contact stiffness %g N/m, latency up to %.1f ms\n",
                  plan.contact_stiffness_Npm, 1e3 * plan.latency_max_s);
@@ -106,7 +97,7 @@ std::string plan_json(const Plan& plan, std::size_t bytes) {
   json["start_name"] = plan.start_name;
   json["method"] = to_string(plan.method);
   json["bytes"] = bytes;
-  json["coordinates"] = axis_names(plan.coordinates);
+  json["coordinates"] = axis_list(plan.coordinates);
   json["start"] = json_of(plan.start);
   json["goal"] = json_of(plan.goal);
   json["goal_tolerance_m"] = plan.goal_tolerance_m;
@@ -116,7 +107,7 @@ std::string plan_json(const Plan& plan, std::size_t bytes) {
                         {"inertia_kgm2", c.inertia_kgm2},
                         {"damping_Nmspr", c.damping_Nmspr},
                         {"stiffness_Nmpr", c.stiffness_Nmpr},
-                        {"axes", axis_names(c.compliant_axes)}};
+                        {"axes", axis_list(c.compliant_axes)}};
   json["force_limit_N"] = plan.force_limit_N;
   json["torque_limit_Nm"] = plan.torque_limit_Nm;
   json["contact_stiffness_Npm"] = plan.contact_stiffness_Npm;

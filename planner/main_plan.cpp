@@ -13,6 +13,7 @@
 #include "planner/planner.h"
 #include "planner/summary.h"
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
 #include "sim/rollout/ode_rollout.h"
@@ -76,8 +77,7 @@ int run(const Arguments& a) {
   Task task = load_task(a.task);
   if (a.time_limit_s) {
     if (!(*a.time_limit_s > 0.0 && *a.time_limit_s <= 86400.0)) {
-      throw InputError("--time-limit = " + std::to_string(*a.time_limit_s) +
-                       ", must be in (0, 86400] s");
+      throw InputError(format("--time-limit = %g, must be in (0, 86400] s", *a.time_limit_s));
     }
     task.time_limit_s = *a.time_limit_s;
   }

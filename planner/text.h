@@ -1,9 +1,7 @@
 #pragma once
 // What the planner's texts share. Offline; any thread.
 
-#include <array>
-#include <cstdio>
-#include <string>
+#include <numbers>
 
 #include "shared/base/text.h"
 

@@ -194,8 +194,8 @@ int parse_and_simulate(int argc, char** argv) {
   app.add_option("--start", line.start, "where the tool stands; default: the task's first start");
   CLI::Option* seed = app.add_option(
       "--seed", line.seed, "draws how far the environment is off, and the sensor's noise");
-  constexpr double kSeedMax = 9007199254740992.0;  // what a JSON reader keeps exactly, 2^53
-  seed->check(CLI::Range(0.0, kSeedMax).description("[0, 2^53]"));
+  constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53U;  // what a JSON reader keeps exactly
+  seed->check(CLI::Range(std::uint64_t{0}, kSeedMax).description("[0, 2^53]"));
   app.add_option("--offset", line.offset, "how far the environment is off: x_m=0.02,y_m=-0.01")
       ->excludes(seed);
   app.add_option("--experiment", line.experiment,

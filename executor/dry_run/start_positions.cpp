@@ -74,20 +74,6 @@ std::string out_of_limits(const JointVector& position, const Cell& cell) {
 
 }  // namespace
 
-const char* joint_unit(const Joint& joint) {
-  return joint.kind == Joint::Kind::kPrismatic ? "m" : "rad";
-}
-
-std::string axis_list(std::uint8_t axes) {
-  std::string text;
-  for (int axis = 0; axis < 6; ++axis) {
-    if ((axes >> axis & 1U) == 0) continue;
-    text += text.empty() ? "" : " ";
-    text += axis_name(axis);
-  }
-  return text.empty() ? "none" : text;
-}
-
 StartPositions start_positions(const Pose& start, const Cell& cell,
                                const ToolKinematics& kinematics) {
   StartPositions result;

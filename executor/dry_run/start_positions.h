@@ -24,10 +24,4 @@ struct StartPositions {
 [[nodiscard]] StartPositions start_positions(const Pose& start, const Cell& cell,
                                              const ToolKinematics& kinematics);
 
-/// "m" or "rad".
-[[nodiscard]] const char* joint_unit(const Joint& joint);
-
-/// "x y rz" for a bit mask of axes, or "none".
-[[nodiscard]] std::string axis_list(std::uint8_t axes);
-
 }  // namespace tenon::executor

@@ -161,11 +161,9 @@ const char* to_string(ContactIdentification::Status status) {
 }
 
 Finding finding_of(const ContactIdentification& c) {
-  Finding finding;
-  finding.found = c.status == ContactIdentification::Status::kIdentified;
-  finding.status = to_string(c.status);
-  finding.report = describe(c);
-  if (!finding.found) return finding;
+  const bool found = c.status == ContactIdentification::Status::kIdentified;
+  Finding finding{found, to_string(c.status), describe(c), {}};
+  if (!found) return finding;
   finding.values = {{"stiffness_Npm", {c.stiffness_Npm}},
                     {"stiffness_deviation_Npm", {c.stiffness_deviation_Npm}},
                     {"delay_s", {c.delay_s}},

@@ -167,11 +167,9 @@ const char* to_string(PayloadIdentification::Status status) {
 }
 
 Finding finding_of(const PayloadIdentification& p) {
-  Finding finding;
-  finding.found = p.status == PayloadIdentification::Status::kIdentified;
-  finding.status = to_string(p.status);
-  finding.report = describe(p);
-  if (!finding.found) return finding;
+  const bool found = p.status == PayloadIdentification::Status::kIdentified;
+  Finding finding{found, to_string(p.status), describe(p), {}};
+  if (!found) return finding;
   const auto three = [](const Vector3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
   finding.values = {{"mass_kg", {p.mass_kg}},
                     {"mass_deviation_kg", {p.mass_deviation_kg}},

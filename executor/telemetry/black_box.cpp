@@ -6,26 +6,26 @@
 
 #include "executor/ending.h"
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 
 namespace tenon::executor {
 namespace {
 
-constexpr std::array<const char*, 6> kAxes = {"x", "y", "z", "rx", "ry", "rz"};
 constexpr std::array<const char*, 4> kQuaternion = {"qw", "qx", "qy", "qz"};
 
 void write_header(std::ostream& out) {
   out << "sequence,time_ns,motion_ns,state,arm_state,request,end_reason,step,phase,moving,"
          "wrench_fresh,signature,joints_fresh,wakeup_late_ns,compute_ns,late_cycles";
   for (const char* what : {"pose", "setpoint", "commanded"}) {
-    for (std::size_t i = 0; i < 3; ++i) out << ',' << what << '_' << kAxes[i] << "_m";
+    for (std::size_t i = 0; i < 3; ++i) out << ',' << what << '_' << kAxisNames[i] << "_m";
     for (const char* q : kQuaternion) out << ',' << what << '_' << q;
   }
   for (std::size_t i = 0; i < 6; ++i) {
-    out << ",velocity_" << kAxes[i] << (i < 3 ? "_mps" : "_radps");
+    out << ",velocity_" << kAxisNames[i] << (i < 3 ? "_mps" : "_radps");
   }
   for (const char* what : {"wrench", "wrench_raw"}) {
     for (std::size_t i = 0; i < 6; ++i) {
-      out << ',' << what << '_' << kAxes[i] << (i < 3 ? "_N" : "_Nm");
+      out << ',' << what << '_' << kAxisNames[i] << (i < 3 ? "_N" : "_Nm");
     }
   }
   for (const char* what : {"position", "position_commanded"}) {

@@ -1,8 +1,6 @@
 #include "executor/telemetry/run_result.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "shared/base/text.h"
@@ -60,7 +58,7 @@ std::string displacement_text(const Vector6& displacement) {
   if (moving == 1) {
     const double way = displacement[last];
     return format("%c%s %.3f %s", way < 0.0 ? '-' : '+', axis_name(last), std::abs(way),
-                  last < 3 ? "m" : "rad");
+                  axis_unit(last));
   }
   std::string all =
       format("(%.3f, %.3f, %.3f) m", displacement[0], displacement[1], displacement[2]);
@@ -156,6 +154,8 @@ std::string to_json(const RunResult& result, const Cell& cell) {
                    {"wakeup_late", json_of(result.statistics.wakeup)},
                    {"compute", json_of(result.statistics.compute)},
                    {"records_dropped", result.records_dropped}};
+  json["arm"] = Json::object();
+  for (const auto& [name, count] : result.arm_counters) json["arm"][name] = count;
   return json.dump(2) + "\n";
 }
 

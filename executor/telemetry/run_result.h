@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "executor/controller.h"
@@ -27,6 +28,8 @@ struct RunResult {
   CycleRunner::Statistics statistics;
   std::uint64_t records_dropped = 0;
   double cycle_s = 0.0;
+  /// What the arm's side of the bus has counted, by name.
+  std::vector<std::pair<std::string, std::uint64_t>> arm_counters;
 
   /// It went wrong in a way that the last cycles may explain: neither as it should, nor on request.
   [[nodiscard]] bool ended_badly() const;

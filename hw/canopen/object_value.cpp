@@ -1,9 +1,9 @@
 #include "hw/canopen/object_value.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 
 namespace tenon::hw::canopen {
 namespace {
@@ -59,7 +59,6 @@ std::vector<std::uint8_t> object_bytes(const std::string& type, const std::strin
 }
 
 std::string object_text(std::span<const std::uint8_t> bytes) {
-  char text[64];
   const std::size_t size = bytes.size();
   if (size == 1 || size == 2 || size == 4) {
     std::uint32_t value = 0;
@@ -67,9 +66,9 @@ std::string object_text(std::span<const std::uint8_t> bytes) {
     const auto unused_bits = static_cast<unsigned>(32 - 8 * size);
     const auto as_signed =
         static_cast<std::int32_t>(value << unused_bits) >> static_cast<int>(unused_bits);
-    std::snprintf(text, sizeof(text), "0x%0*X = %u", static_cast<int>(2 * size), value, value);
     const std::string negative = as_signed < 0 ? " or " + std::to_string(as_signed) : "";
-    return text + negative + " (" + std::to_string(size) + (size == 1 ? " byte)" : " bytes)");
+    return format("0x%0*X = %u", static_cast<int>(2 * size), value, value) + negative + " (" +
+           std::to_string(size) + (size == 1 ? " byte)" : " bytes)");
   }
   const bool printable =
       std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t c) { return c >= 0x20 && c < 0x7F; });
@@ -77,10 +76,7 @@ std::string object_text(std::span<const std::uint8_t> bytes) {
     return "\"" + std::string(bytes.begin(), bytes.end()) + "\"";
   }
   std::string hex;
-  for (const std::uint8_t byte : bytes) {
-    std::snprintf(text, sizeof(text), "%02X ", static_cast<unsigned>(byte));
-    hex += text;
-  }
+  for (const std::uint8_t byte : bytes) hex += format("%02X ", static_cast<unsigned>(byte));
   return hex + "(" + std::to_string(size) + " bytes)";
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Text for messages. Allocates; not for real time.
 
+#include <array>
 #include <cstdio>
 #include <string>
 
@@ -15,23 +16,29 @@ template <typename... Values>
   return text;
 }
 
+inline constexpr std::array<const char*, 6> kAxisNames = {"x", "y", "z", "rx", "ry", "rz"};
+
 /// x y z rx ry rz for 0..5, else "?".
 [[nodiscard]] constexpr const char* axis_name(int axis) {
-  switch (axis) {
-    case 0:
-      return "x";
-    case 1:
-      return "y";
-    case 2:
-      return "z";
-    case 3:
-      return "rx";
-    case 4:
-      return "ry";
-    case 5:
-      return "rz";
+  if (axis < 0 || axis >= 6) return "?";
+  return kAxisNames.at(static_cast<std::size_t>(axis));
+}
+
+/// "m" for 0..2, "rad" for 3..5.
+[[nodiscard]] constexpr const char* axis_unit(int axis) { return axis < 3 ? "m" : "rad"; }
+
+/// x_m y_m z_m rx_rad ry_rad rz_rad: what files and options call a displacement along an axis.
+[[nodiscard]] inline std::string axis_key(int axis) {
+  return std::string(axis_name(axis)) + '_' + axis_unit(axis);
+}
+
+/// "x y rz" for a bit mask of axes, or "none".
+[[nodiscard]] inline std::string axis_list(unsigned axes) {
+  std::string text;
+  for (int axis = 0; axis < 6; ++axis) {
+    if ((axes >> axis & 1U) != 0) text += (text.empty() ? "" : " ") + std::string(axis_name(axis));
   }
-  return "?";
+  return text.empty() ? "none" : text;
 }
 
 }  // namespace tenon

@@ -38,6 +38,11 @@ struct Joint {
   LinkInertia link;                  ///< the link behind the joint
 };
 
+/// "m" or "rad": what the joint's position is in.
+[[nodiscard]] inline const char* joint_unit(const Joint& joint) {
+  return joint.kind == Joint::Kind::kPrismatic ? "m" : "rad";
+}
+
 /// A force/torque node: two TPDOs of four little-endian i16 (three values and a sample counter).
 struct ForceTorqueSensor {
   std::uint8_t node = 0;

@@ -1,5 +1,3 @@
-#include <span>
-
 #include "shared/base/error.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"

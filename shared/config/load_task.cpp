@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
+#include "shared/base/text.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/variant.h"
@@ -19,7 +19,6 @@ using config::Map;
 using config::positive_to;
 using config::Value;
 
-constexpr std::array<const char*, 6> kAxes = {"x", "y", "z", "rx", "ry", "rz"};
 constexpr std::size_t kShapesMax = 200;
 constexpr std::size_t kStartsMax = 200;
 constexpr double kSizeMax_m = 100.0;
@@ -34,7 +33,7 @@ std::uint32_t microseconds(double time_s) {
 CoordinateMask read_axes(const Value& value) {
   unsigned mask = 0;
   for (const Value& axis : value.list(1, 6)) {
-    const unsigned bit = 1U << axis.choice({kAxes.begin(), kAxes.end()});
+    const unsigned bit = 1U << axis.choice({kAxisNames.begin(), kAxisNames.end()});
     if ((mask & bit) != 0) axis.refuse_value("listed once");
     mask |= bit;
   }
@@ -121,7 +120,7 @@ Start read_start(const Value& value, const Task& task, std::set<std::string>& na
   for (int axis = 0; axis < 6; ++axis) {
     if (has(task.coordinates, axis) || std::abs(way[axis]) <= 1e-9) continue;
     map.at("pose").refuse("is " + std::to_string(std::abs(way[axis])) + (axis < 3 ? " m" : " rad") +
-                          " off the goal along " + kAxes[static_cast<std::size_t>(axis)] +
+                          " off the goal along " + axis_name(axis) +
                           ", which is not a search coordinate");
   }
   return start;
@@ -199,8 +198,7 @@ void read_compliance(const Value& value, Task& task) {
   c.compliant_axes = read_axes(map.at("axes"));
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(task.coordinates, axis) || has(c.compliant_axes, axis)) continue;
-    map.at("axes").refuse("lacks the search coordinate " +
-                          std::string(kAxes[static_cast<std::size_t>(axis)]) +
+    map.at("axes").refuse("lacks the search coordinate " + std::string(axis_name(axis)) +
                           ": a rigid axis feels no contact");
   }
   c.mass_kg = map.number("mass_kg", positive_to(1e3));

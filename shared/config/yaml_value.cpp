@@ -1,26 +1,19 @@
 #include "shared/config/yaml_value.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 
 namespace tenon::config {
 namespace {
 
 constexpr double kPositionMax_m = 100.0;
 constexpr double kRotationMax_rad = 3.1415926535897932;
-
-std::string text_of(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
-}
 
 const char* kind_of(const YAML::Node& node) {
   if (node.IsMap()) return "a mapping";
@@ -49,7 +42,7 @@ std::optional<Number> parsed(const std::string& text) {
 }  // namespace
 
 std::string to_string(const Bounds& bounds) {
-  return (bounds.open_low ? "(" : "[") + text_of(bounds.low) + ", " + text_of(bounds.high) + "]";
+  return format("%c%g, %g]", bounds.open_low ? '(' : '[', bounds.low, bounds.high);
 }
 
 Value::Value(std::shared_ptr<const std::string> file, std::string path, const YAML::Node& node)

@@ -1,7 +1,6 @@
 #include "shared/motion/guarded_move.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "shared/motion/path_limits.h"

@@ -1,9 +1,8 @@
 #include "sim/canopen/eds.h"
 
-#include <array>
-#include <cstdio>
 #include <vector>
 
+#include "shared/base/text.h"
 #include "shared/canopen/constants.h"
 
 namespace tenon::sim {
@@ -12,10 +11,7 @@ namespace {
 using Indices = std::vector<std::uint16_t>;
 
 std::string hex(std::uint64_t value, int digits = 1) {
-  std::array<char, 32> text{};
-  static_cast<void>(std::snprintf(text.data(), text.size(), "%0*llX", digits,
-                                  static_cast<unsigned long long>(value)));
-  return text.data();
+  return format("%0*llX", digits, static_cast<unsigned long long>(value));
 }
 
 bool is_signed(DataType type) { return lowest(type) < 0; }

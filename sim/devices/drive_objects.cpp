@@ -1,6 +1,5 @@
 #include "sim/devices/drive_objects.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -1,12 +1,11 @@
 #include "sim/faults/fault_spec.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <string_view>
 
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 
 namespace tenon::sim {
 namespace {
@@ -95,11 +94,7 @@ bool names_value(const Kind& kind, std::string_view key) {
   return false;
 }
 
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
+std::string range_of(double low, double high) { return format("[%g, %g]", low, high); }
 
 class Parser {
  public:
@@ -183,8 +178,8 @@ class Parser {
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
     if (error != std::errc{} || end != value.data() + value.size() ||
         !(result >= low && result <= high)) {
-      refuse(text_, key + " = '" + std::string(value) + "', must be a number in [" + shortest(low) +
-                        ", " + shortest(high) + "]");
+      refuse(text_,
+             key + " = '" + std::string(value) + "', must be a number in " + range_of(low, high));
     }
     return result;
   }
@@ -214,8 +209,8 @@ std::string fault_help() {
     const std::string name = kind.name;
     help += name + std::string(17 - name.size(), ' ') + kind.meaning;
     if (kind.value_key != nullptr && kind.kind != FaultKind::kEmergency) {
-      help += std::string(", ") + kind.value_key + " in [" + shortest(kind.value_min) + ", " +
-              shortest(kind.value_max) + "]";
+      help +=
+          std::string(", ") + kind.value_key + " in " + range_of(kind.value_min, kind.value_max);
     }
     help += std::string("; ") + kind.example + "\n";
   }

@@ -1,7 +1,6 @@
 #include "sim/ode/ode_world.h"
 
 #include <cstdarg>
-#include <mutex>
 
 namespace tenon::sim {
 namespace {

@@ -1,19 +1,15 @@
 #include "sim/virtual_arm/environment_offset.h"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 #include "sim/devices/normal_source.h"
 
 namespace tenon::sim {
 namespace {
-
-constexpr std::array<std::string_view, 6> kAxes = {"x_m",    "y_m",    "z_m",
-                                                   "rx_rad", "ry_rad", "rz_rad"};
 
 [[noreturn]] void refuse(const std::string& item, const std::string& why) {
   throw InputError("--offset: \"" + item + "\" " + why + "; give it as x_m=0.02,y_m=-0.01");
@@ -40,12 +36,12 @@ Vector6 parse_offset(const std::string& text, CoordinateMask coordinates) {
     const std::size_t comma = rest.find(',');
     const std::string_view item = rest.substr(0, comma);
     const std::size_t equals = item.find('=');
-    const auto axis = std::find(kAxes.begin(), kAxes.end(), item.substr(0, equals));
-    if (equals == std::string_view::npos || axis == kAxes.end()) {
+    int axis = 0;
+    while (axis < 6 && axis_key(axis) != item.substr(0, equals)) ++axis;
+    if (equals == std::string_view::npos || axis == 6) {
       refuse(std::string(item), "must name one of x_m y_m z_m rx_rad ry_rad rz_rad and a value");
     }
-    const auto index = axis - kAxes.begin();
-    const auto bit = static_cast<CoordinateMask>(1U << index);
+    const auto bit = static_cast<CoordinateMask>(1U << axis);
     if ((coordinates & bit) == 0) refuse(std::string(item), "is no search coordinate of the task");
     if ((seen & bit) != 0) refuse(std::string(item), "stands there twice");
     seen |= bit;
@@ -55,7 +51,7 @@ Vector6 parse_offset(const std::string& text, CoordinateMask coordinates) {
     if (error != std::errc{} || end != number.data() + number.size() || !(std::abs(value) <= 1.0)) {
       refuse(std::string(item), "must have a number in [-1, 1]");
     }
-    offset[index] = value;
+    offset[axis] = value;
     if (comma == std::string_view::npos) return offset;
     rest.remove_prefix(comma + 1);
   }

@@ -2,11 +2,11 @@
 // The virtual cell's time line of what matters, bounded. One thread.
 
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "shared/base/text.h"
 #include "shared/ports/can_bus.h"
 #include "sim/virtual_arm/truth.h"
 
@@ -24,14 +24,12 @@ class EventLog {
 
   void emergency(std::int64_t time_ns, const CanFrame& frame) {
     const unsigned code = static_cast<unsigned>(frame.data[1]) << 8 | frame.data[0];
-    char text[64];
     const char* meaning = code == 0x8130   ? " (heartbeat of the master lost)"
                           : code == 0x8611 ? " (following error)"
                           : code == 0x8210 ? " (PDO too short)"
                           : code == 0      ? " (reset)"
                                            : "";
-    std::snprintf(text, sizeof text, "node %u: emergency %04Xh%s", frame.id & 0x7FU, code, meaning);
-    add(time_ns, text);
+    add(time_ns, format("node %u: emergency %04Xh%s", frame.id & 0x7FU, code, meaning));
   }
 
   [[nodiscard]] const std::vector<TruthEvent>& events() const { return events_; }

@@ -1,10 +1,9 @@
 #include "sim/virtual_arm/truth.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "shared/base/text.h"
 #include "sim/virtual_arm/world_json.h"
 
 namespace tenon::sim {
@@ -30,9 +29,7 @@ std::string in_mm(const Vector6& displacement) {
   std::string text;
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(displacement[axis]) < kNothing_m) continue;
-    std::array<char, 32> part{};
-    std::snprintf(part.data(), part.size(), "%c %+.1f ", 'x' + axis, 1e3 * displacement[axis]);
-    text += part.data();
+    text += format("%s %+.1f ", axis_name(axis), 1e3 * displacement[axis]);
   }
   return text.empty() ? "nothing" : text + "mm";
 }
@@ -40,14 +37,11 @@ std::string in_mm(const Vector6& displacement) {
 }  // namespace
 
 std::string describe(const Truth& truth) {
-  std::array<char, 200> rest{};
-  std::snprintf(
-      rest.data(), rest.size(),
-      "%.2f mm from its goal, %s the tolerance of %g mm; it was pressed with %.0f N at most",
-      1e3 * truth.error_norm_m, truth.within_tolerance ? "within" : "NOT within",
-      1e3 * truth.goal_tolerance_m, truth.contact_force_N_max);
-  return "the environment was off by " + in_mm(truth.offset) + "\nthe part ended " + rest.data() +
-         "\n";
+  const std::string end =
+      format("%.2f mm from its goal, %s the tolerance of %g mm; it was pressed with %.0f N at most",
+             1e3 * truth.error_norm_m, truth.within_tolerance ? "within" : "NOT within",
+             1e3 * truth.goal_tolerance_m, truth.contact_force_N_max);
+  return "the environment was off by " + in_mm(truth.offset) + "\nthe part ended " + end + "\n";
 }
 
 std::string truth_json(const Truth& truth) {

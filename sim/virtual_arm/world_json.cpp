@@ -1,8 +1,9 @@
 #include "sim/virtual_arm/world_json.h"
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <vector>
+
+#include "shared/base/text.h"
 
 namespace tenon::sim {
 namespace {
@@ -20,10 +21,8 @@ Json list(const std::vector<Vector3>& values) {
 }  // namespace
 
 Json by_axis(const Vector6& value) {
-  static constexpr std::array<const char*, 6> kNames = {"x_m",    "y_m",    "z_m",
-                                                        "rx_rad", "ry_rad", "rz_rad"};
   Json json;
-  for (int axis = 0; axis < 6; ++axis) json[kNames[static_cast<std::size_t>(axis)]] = value[axis];
+  for (int axis = 0; axis < 6; ++axis) json[axis_key(axis)] = value[axis];
   return json;
 }
 

@@ -14,12 +14,12 @@ namespace {
 
 using namespace tenon;
 
-Plan documented() { return test::documented_plan(); }
-Plan usual() { return test::long_plan(0x03, 15, {Outcome::kReached, Outcome::kContact}); }
+Plan documented() { return tests::documented_plan(); }
+Plan usual() { return tests::long_plan(0x03, 15, {Outcome::kReached, Outcome::kContact}); }
 Plan largest() {
-  return test::long_plan(0x3F, kMaxSteps,
-                         {Outcome::kReached, Outcome::kContact, Outcome::kRelease,
-                          Outcome::kBlocked, Outcome::kTimeout});
+  return tests::long_plan(0x3F, kMaxSteps,
+                          {Outcome::kReached, Outcome::kContact, Outcome::kRelease,
+                           Outcome::kBlocked, Outcome::kTimeout});
 }
 
 void decode(benchmark::State& state, Plan (*make)()) {

@@ -23,7 +23,7 @@ struct BadInput {
   std::vector<std::string> named;  ///< all of it stands in the line
 };
 
-void expect_refused(const test::ScratchFolder& folder, const BadInput& bad) {
+void expect_refused(const ScratchFolder& folder, const BadInput& bad) {
   SCOPED_TRACE(::testing::PrintToString(bad.command));
   const Ended ended = run(folder, bad.command);
   EXPECT_EQ(ended.status, 2);
@@ -37,9 +37,8 @@ void expect_refused(const test::ScratchFolder& folder, const BadInput& bad) {
 }
 
 // A copy of a file of the tree in which one piece of text is another.
-std::string edited(const test::ScratchFolder& folder, const std::string& name,
-                   const std::string& source, const std::string& piece,
-                   const std::string& instead) {
+std::string edited(const ScratchFolder& folder, const std::string& name, const std::string& source,
+                   const std::string& piece, const std::string& instead) {
   std::ostringstream all;
   all << std::ifstream(source).rdbuf();
   std::string text = all.str();
@@ -50,7 +49,7 @@ std::string edited(const test::ScratchFolder& folder, const std::string& name,
 }
 
 // The gantry's cell around another robot file, which finds the gantry's URDF beside itself.
-std::string cell_around(const test::ScratchFolder& folder, const std::string& name,
+std::string cell_around(const ScratchFolder& folder, const std::string& name,
                         const std::string& robot_file) {
   (void)edited(folder, "gantry3.urdf", TENON_SOURCE_DIR "/hw/robots/gantry3/gantry3.urdf", "", "");
   return edited(folder, name, gantry_cell_file(), "../robots/gantry3/robot.yaml", robot_file);
@@ -58,7 +57,7 @@ std::string cell_around(const test::ScratchFolder& folder, const std::string& na
 
 std::string robot_file() { return TENON_SOURCE_DIR "/hw/robots/gantry3/robot.yaml"; }
 
-std::string with_another_version(const test::ScratchFolder& folder, std::string plan) {
+std::string with_another_version(const ScratchFolder& folder, std::string plan) {
   plan[4] = 7;
   const std::vector<std::uint8_t> body(plan.begin(), plan.end() - 4);
   const std::uint32_t checksum = crc32c(body);
@@ -69,7 +68,7 @@ std::string with_another_version(const test::ScratchFolder& folder, std::string 
 }
 
 TEST(BadInput, OfThePlannerIsOneLineAndStatusTwo) {
-  const test::ScratchFolder folder;
+  const ScratchFolder folder;
   const auto task = [&](const std::string& name, const std::string& piece,
                         const std::string& instead) {
     return edited(folder, name, box_task_file(), piece, instead);
@@ -107,7 +106,7 @@ TEST(BadInput, OfThePlannerIsOneLineAndStatusTwo) {
 }
 
 TEST(BadInput, OfExecutorInspectorAndBusToolIsOneLineAndStatusTwo) {
-  const test::ScratchFolder folder;
+  const ScratchFolder folder;
   const std::string cell = gantry_cell_file();
   const std::string plan = plan_by_command(folder, "4");
   const std::string bytes = folder.get("start_4.tnp");
@@ -166,7 +165,7 @@ TEST(BadInput, OfExecutorInspectorAndBusToolIsOneLineAndStatusTwo) {
 }
 
 TEST(BadInput, ADriveThatDoesNotAnswerIsNamedWithWhatWasExpected) {
-  const test::ScratchFolder folder;
+  const ScratchFolder folder;
   const std::string elsewhere =
       cell_around(folder, "elsewhere.yaml",
                   edited(folder, "robot.yaml", robot_file(), "    node: 3\n", "    node: 30\n"));

@@ -8,13 +8,13 @@
 
 namespace tenon::tests {
 
-Ended run(const test::ScratchFolder& folder, const std::vector<std::string>& command) {
+Ended run(const ScratchFolder& folder, const std::vector<std::string>& command) {
   ChildProcess child(folder.path(), command);
   const int status = child.wait(std::chrono::seconds(120));
   return {status, child.out(), child.err()};
 }
 
-std::string plan_by_command(const test::ScratchFolder& folder, const std::string& start) {
+std::string plan_by_command(const ScratchFolder& folder, const std::string& start) {
   const std::string file = folder.path() / ("start_" + start + ".tnp");
   const Ended ended = run(folder, {TENON_PLAN_EXE, box_task_file(), "--start", start, "--cell",
                                    gantry_cell_file(), "--threads", "2", "-o", file});

@@ -16,11 +16,10 @@ struct Ended {
 };
 
 /// Runs a command to its end.
-[[nodiscard]] Ended run(const test::ScratchFolder& folder, const std::vector<std::string>& command);
+[[nodiscard]] Ended run(const ScratchFolder& folder, const std::vector<std::string>& command);
 
 /// tenon-plan for a start of the box task on the gantry. @return the plan file in `folder`
 /// @throws std::runtime_error with its error where there is no plan
-[[nodiscard]] std::string plan_by_command(const test::ScratchFolder& folder,
-                                          const std::string& start);
+[[nodiscard]] std::string plan_by_command(const ScratchFolder& folder, const std::string& start);
 
 }  // namespace tenon::tests

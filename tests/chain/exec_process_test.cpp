@@ -35,7 +35,7 @@ class Identifying {
   [[nodiscard]] ChildProcess& sim() { return sim_.process(); }
   [[nodiscard]] ChildProcess& exec() { return exec_; }
   [[nodiscard]] std::string uri() const { return sim_.uri(); }
-  [[nodiscard]] const test::ScratchFolder& folder() const { return folder_; }
+  [[nodiscard]] const ScratchFolder& folder() const { return folder_; }
   [[nodiscard]] std::string file(const std::string& name) const { return folder_.path() / name; }
   [[nodiscard]] nlohmann::json result() const {
     return nlohmann::json::parse(folder_.get("result.json"));
@@ -74,7 +74,7 @@ class Identifying {
     return all;
   }
 
-  test::ScratchFolder folder_;
+  ScratchFolder folder_;
   SimProcess sim_;
   ChildProcess exec_;
 };
@@ -113,6 +113,7 @@ TEST(ExecProcess, IdentifyPayloadLeavesResultLogAndFramesAsAPlansRunDoes) {
   EXPECT_EQ(result.at("reason"), "measured");
   EXPECT_EQ(result.at("finding").at("status"), "not_turned");
   EXPECT_EQ(result.at("disable_confirmed"), true);
+  EXPECT_EQ(result.at("arm").at("malformed_frames"), 0);
   EXPECT_NE(result.at("message").get<std::string>().find("does not turn its sensor"),
             std::string::npos);
   const Logged log = read_log(run->file("log"));
@@ -155,7 +156,7 @@ TEST(ExecProcess, ASecondOneOnTheBusLeavesTheFirstAlone) {
   for (int attempt = 1;; ++attempt) {
     Identifying first({"--identify-contact", "-z"});
     ASSERT_TRUE(first.reach_cycles()) << first.exec().err();
-    const test::ScratchFolder elsewhere;
+    const ScratchFolder elsewhere;
     const Ended second =
         run(elsewhere, {TENON_EXEC_EXE, "--cell", gantry_cell_file(), "--can", first.uri(), "--rt",
                         "off", "--lcm-url", "none", "--identify-payload"});
@@ -170,7 +171,7 @@ TEST(ExecProcess, ASecondOneOnTheBusLeavesTheFirstAlone) {
 }
 
 TEST(ExecProcess, RequiredRealTimeNamesAllThatIsMissingAtOnce) {
-  const test::ScratchFolder folder;
+  const ScratchFolder folder;
   SimProcess sim(folder.path(), "4", {});
   std::vector<std::string> command = {"prlimit", "--memlock=65536:65536", "--rtprio=0:0"};
   if (geteuid() == 0) command.insert(command.begin(), {"setpriv", "--bounding-set=-all"});
@@ -187,7 +188,7 @@ TEST(ExecProcess, RequiredRealTimeNamesAllThatIsMissingAtOnce) {
 }
 
 TEST(ExecProcess, WhatBelongsToAPlanIsRefusedBesideAnIdentification) {
-  const test::ScratchFolder folder;
+  const ScratchFolder folder;
   for (const std::string option : {"--dry-run", "--go-to-start"}) {
     const Ended ended = run(folder, {TENON_EXEC_EXE, "--cell", gantry_cell_file(), "--can",
                                      "slcan://127.0.0.1:1", "--identify-payload", option});

@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <string>
-#include <vector>
 
 #include "executor/cycle_runner.h"
 #include "sim/faults/fault_spec.h"

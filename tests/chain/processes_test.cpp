@@ -30,7 +30,7 @@ namespace {
 // One run of the plan for start 4 on an arm whose table stands elsewhere, both just started.
 class Processes {
  public:
-  explicit Processes(const test::ScratchFolder& folder, const std::string& plan)
+  explicit Processes(const ScratchFolder& folder, const std::string& plan)
       : folder_(folder),
         sim_(folder.path(), "4",
              {"--once", "--offset", "x_m=0.02,y_m=-0.015", "--json", file("truth.json")}),
@@ -55,7 +55,7 @@ class Processes {
     return nlohmann::json::parse(folder_.get(name));
   }
 
-  const test::ScratchFolder& folder_;
+  const ScratchFolder& folder_;
   SimProcess sim_;
   ChildProcess exec_;
 };
@@ -92,7 +92,7 @@ class ProcessesTest : public ::testing::Test {
     return late;
   }
 
-  test::ScratchFolder folder;
+  ScratchFolder folder;
   std::string plan = plan_by_command(folder, "4");
   std::unique_ptr<Processes> processes;
 };
@@ -219,7 +219,7 @@ TEST_F(ProcessesTest, CtrlCInMidMotionStopsTheArmAndSaysSo) {
 
 TEST_F(ProcessesTest, CtrlCDuringTheBringUpLeavesAResult) {
   // On a bus where nobody answers the bring-up goes on for seconds.
-  const test::ScratchFolder elsewhere;
+  const ScratchFolder elsewhere;
   SimProcess sim(elsewhere.path(), "4", {});
   sim.process().send(SIGSTOP);
   const std::string result = elsewhere.path() / "result.json";

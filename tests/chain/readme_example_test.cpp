@@ -13,7 +13,7 @@ namespace {
 
 TEST(ReadmeExample, ThePythonSnippetPrintsWhatItsCommentSays) {
   // Its port is the one that everybody uses; a network namespace has all ports free.
-  const test::ScratchFolder folder;
+  const ScratchFolder folder;
   const std::string source = TENON_SOURCE_DIR;
   ChildProcess example(
       folder.path(),

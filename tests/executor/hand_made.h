@@ -2,7 +2,6 @@
 // A cell and plans made by hand, small enough to foresee what must happen.
 
 #include <initializer_list>
-#include <string>
 #include <utility>
 
 #include "shared/cell/cell.h"

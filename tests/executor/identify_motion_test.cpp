@@ -6,7 +6,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <string>
 
 #include "executor/cycle_runner.h"
 #include "executor/identification/identification.h"

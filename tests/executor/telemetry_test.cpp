@@ -139,7 +139,8 @@ TEST(RunResult, TheJsonTellsStepsReasonAndCycle) {
   Bench bench(touch_and_slide_plan());
   bench.arm.walls.push_back({0, +1, 0.13});
   bench.run();
-  const RunResult result = gather_result(bench.controller, bench.runner, 7, "");
+  RunResult result = gather_result(bench.controller, bench.runner, 7, "");
+  result.arm_counters = {{"late_frames", 3}};
   const auto json = nlohmann::json::parse(to_json(result, bench.controller.cell()));
   EXPECT_EQ(json.at("status"), "done");
   EXPECT_EQ(json.at("reason"), "plan_done");
@@ -151,6 +152,7 @@ TEST(RunResult, TheJsonTellsStepsReasonAndCycle) {
   EXPECT_EQ(json["steps"][1].at("next"), "done");
   EXPECT_EQ(json.at("cycle").at("records_dropped"), 7);
   EXPECT_EQ(json.at("cycle").at("cycles"), result.statistics.cycles);
+  EXPECT_EQ(json.at("arm").at("late_frames"), 3);
 }
 
 TEST(RunResult, AnArmThatNeverDisabledIsNoSuccess) {

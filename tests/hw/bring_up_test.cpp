@@ -10,9 +10,9 @@
 
 #include "hw/describe_fault.h"
 #include "hw/node_settings.h"
-#include "shared/base/error.h"
 #include "tests/hw/gantry_on_bus.h"
 #include "tests/support/frame_filter.h"
+#include "tests/support/refusal.h"
 
 namespace tenon::hw {
 namespace {
@@ -277,16 +277,11 @@ TEST(BringUp, PrepareStartsOverAfterAFault) {
 }
 
 std::string refusal(const Robot& robot) {
-  try {
-    check_robot(robot);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return tests::refusal([&] { check_robot(robot); });
 }
 
 TEST(CheckRobot, RefusesWhatCannotBeDriven) {
-  EXPECT_EQ(refusal(gantry_robot()), "");
+  EXPECT_EQ(refusal(gantry_robot()), "accepted");
   Robot robot = gantry_robot();
   robot.joints[1].node = 4;
   EXPECT_EQ(refusal(robot),

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "shared/base/error.h"
 #include "tests/hw/gantry_on_bus.h"
+#include "tests/support/refusal.h"
 
 namespace tenon::hw {
 namespace {
@@ -56,12 +56,7 @@ TEST(BusLoad, TheLastOfAnOddNumberOfPackedTargetsHasFourBytes) {
 }
 
 std::string refusal(const Robot& robot) {
-  try {
-    check_bus_load(robot);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return tests::refusal([&] { check_bus_load(robot); });
 }
 
 TEST(BusLoad, TooManyFramesAreRefusedWithTheNumbers) {

@@ -1,7 +1,5 @@
 #include "tests/hw/gantry_on_bus.h"
 
-#include <string>
-
 namespace tenon::hw {
 
 Robot gantry_robot() {

@@ -40,7 +40,7 @@ std::vector<std::string> frames_of(const std::string& log, bool odd) {
 }
 
 TEST(PythonCan, ExchangesTenThousandFramesWithoutLossAndItsLogIsOurs) {
-  const test::ScratchFolder folder;
+  const tests::ScratchFolder folder;
   SlcanServer server(listen_tcp("127.0.0.1", 0));
   const auto ring = std::make_unique<CanRecordRing>();
   RecordingBus bus(server, *ring);

@@ -1,7 +1,6 @@
 #include "tests/hw/scripted_node.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace tenon::hw {
 namespace {

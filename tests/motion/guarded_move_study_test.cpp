@@ -8,8 +8,6 @@
 #include <cstdio>
 #include <random>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "shared/motion/guarded_move.h"
 #include "shared/motion/rules.h"

@@ -18,35 +18,31 @@ SpeedLimits limits() {
   return v;
 }
 
+void expect_limits(const Vector6& displacement, const PathLimits& expected) {
+  const PathLimits path = path_limits(displacement, limits());
+  EXPECT_EQ(path.approach_speed, expected.approach_speed);
+  EXPECT_EQ(path.contact_speed, expected.contact_speed);
+  EXPECT_EQ(path.acceleration, expected.acceleration);
+  EXPECT_EQ(path.jerk, expected.jerk);
+}
+
 TEST(PathLimits, ATranslationHasTheLinearOnes) {
   const Vector6 displacement{{0.3, 0.0, -0.4, 0.0, 0.0, 0.0}};
   EXPECT_DOUBLE_EQ(path_length(displacement), 0.5);
-  const PathLimits path = path_limits(displacement, limits());
-  EXPECT_EQ(path.approach_speed, 0.4);
-  EXPECT_EQ(path.contact_speed, 0.1);
-  EXPECT_EQ(path.acceleration, 2.0);
-  EXPECT_EQ(path.jerk, 30.0);
+  expect_limits(displacement, {0.4, 0.1, 2.0, 30.0});
 }
 
 TEST(PathLimits, ARotationHasTheAngularOnes) {
   const Vector6 displacement{{0.0, 0.0, 0.0, 0.0, -0.2, 0.0}};
   EXPECT_DOUBLE_EQ(path_length(displacement), 0.2);
-  const PathLimits path = path_limits(displacement, limits());
-  EXPECT_EQ(path.approach_speed, 0.8);
-  EXPECT_EQ(path.contact_speed, 0.3);
-  EXPECT_EQ(path.acceleration, 5.0);
-  EXPECT_EQ(path.jerk, 60.0);
+  expect_limits(displacement, {0.8, 0.3, 5.0, 60.0});
 }
 
 // 0.5 m while it turns by 1 rad: each metre is 2 rad, so 0.8 rad/s are 0.4 m/s and 0.3 are 0.15.
 TEST(PathLimits, OfBothTheTighterHoldsForEachLimit) {
   const Vector6 displacement{{0.5, 0.0, 0.0, 0.0, 0.0, 1.0}};
   EXPECT_DOUBLE_EQ(path_length(displacement), 0.5);
-  const PathLimits path = path_limits(displacement, limits());
-  EXPECT_DOUBLE_EQ(path.approach_speed, 0.4);
-  EXPECT_DOUBLE_EQ(path.contact_speed, 0.1);
-  EXPECT_DOUBLE_EQ(path.acceleration, 2.0);
-  EXPECT_DOUBLE_EQ(path.jerk, 30.0);
+  expect_limits(displacement, {0.4, 0.1, 2.0, 30.0});
   const Vector6 tighter{{0.5, 0.0, 0.0, 0.0, 0.0, 2.0}};
   EXPECT_DOUBLE_EQ(path_limits(tighter, limits()).contact_speed, 0.075);
   EXPECT_DOUBLE_EQ(path_limits(tighter, limits()).jerk, 15.0);

@@ -7,7 +7,7 @@
 
 #include "shared/plan/plan.h"
 
-namespace tenon::test {
+namespace tenon::tests {
 
 /// The three moves at the end of shared/plan/FORMAT.md.
 inline Plan documented_plan() {
@@ -85,4 +85,4 @@ inline Plan long_plan(CoordinateMask coordinates, std::size_t steps,
   return plan;
 }
 
-}  // namespace tenon::test
+}  // namespace tenon::tests

@@ -7,26 +7,17 @@
 
 #include <csignal>
 
-#include "shared/base/error.h"
 #include "shared/config/load.h"
 #include "shared/plan/codec.h"
 #include "tests/shared/example_plans.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace tenon {
 namespace {
 
-using test::ScratchFolder;
-
-template <typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using tests::refusal;
+using tests::ScratchFolder;
 
 // Writes beyond this many bytes fail as on a full disk, for as long as this lives.
 class FullDisk {
@@ -62,7 +53,7 @@ TEST(WriteFile, LeavesTheOldFileWholeWhenTheDiskIsFull) {
   std::string message;
   {
     const FullDisk full_disk(1000);
-    message = message_of([&] { write_file(file, std::string(5000, 'x')); });
+    message = refusal([&] { write_file(file, std::string(5000, 'x')); });
   }
   EXPECT_EQ(message, file.string() + ": cannot be written: File too large");
   EXPECT_EQ(folder.get("a.txt"), "old");
@@ -71,29 +62,29 @@ TEST(WriteFile, LeavesTheOldFileWholeWhenTheDiskIsFull) {
 
 TEST(WriteFile, RefusesFoldersAndDevices) {
   const ScratchFolder folder;
-  EXPECT_EQ(message_of([&] { write_file(folder.path(), "text"); }),
+  EXPECT_EQ(refusal([&] { write_file(folder.path(), "text"); }),
             folder.path().string() + ": cannot be written: it is not a regular file");
-  EXPECT_EQ(message_of([] { write_file("/dev/null", "text"); }),
+  EXPECT_EQ(refusal([] { write_file("/dev/null", "text"); }),
             "/dev/null: cannot be written: it is not a regular file");
   const std::filesystem::path nowhere = folder.path() / "no" / "a.txt";
-  EXPECT_EQ(message_of([&] { write_file(nowhere, "text"); }),
+  EXPECT_EQ(refusal([&] { write_file(nowhere, "text"); }),
             nowhere.string() + ": cannot be written: No such file or directory");
 }
 
 TEST(LoadPlan, ReadsWhatWriteFileWrote) {
   const ScratchFolder folder;
-  write_file(folder.path() / "a.tnp", encode_plan(test::documented_plan()));
+  write_file(folder.path() / "a.tnp", encode_plan(tests::documented_plan()));
   const Plan plan = load_plan(folder.path() / "a.tnp");
-  EXPECT_EQ(encode_plan(plan), encode_plan(test::documented_plan()));
+  EXPECT_EQ(encode_plan(plan), encode_plan(tests::documented_plan()));
 }
 
 TEST(LoadPlan, NamesFileByteFieldAndReason) {
   const ScratchFolder folder;
-  std::vector<std::uint8_t> bytes = encode_plan(test::documented_plan());
+  std::vector<std::uint8_t> bytes = encode_plan(tests::documented_plan());
   const std::filesystem::path file = folder.path() / "a.tnp";
   const auto message = [&] {
     write_file(file, bytes);
-    return message_of([&] { (void)load_plan(file); });
+    return refusal([&] { (void)load_plan(file); });
   };
   bytes[4] = 2;
   EXPECT_EQ(message(), file.string() +
@@ -104,7 +95,7 @@ TEST(LoadPlan, NamesFileByteFieldAndReason) {
   EXPECT_EQ(
       message(),
       file.string() + ": byte 392, checksum: the checksum does not match: damaged; plan again");
-  EXPECT_EQ(message_of([&] { (void)load_plan(folder.path() / "none.tnp"); }),
+  EXPECT_EQ(refusal([&] { (void)load_plan(folder.path() / "none.tnp"); }),
             (folder.path() / "none.tnp").string() + ": cannot be read: No such file or directory");
 }
 

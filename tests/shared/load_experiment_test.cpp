@@ -5,8 +5,8 @@
 #include <fstream>
 #include <string>
 
-#include "shared/base/error.h"
 #include "shared/config/load.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace tenon {
@@ -19,16 +19,12 @@ class LoadExperimentTest : public ::testing::Test {
     return load_experiment(folder.path() / "x.yaml");
   }
   std::string refusal(const std::string& text) const {
-    try {
-      static_cast<void>(load(text));
-    } catch (const InputError& error) {
-      const std::string what = error.what();
-      return what.substr(what.find("x.yaml"));
-    }
-    return "";
+    const std::string line = tests::refusal([&] { static_cast<void>(load(text)); });
+    const std::size_t file = line.find("x.yaml");
+    return file == std::string::npos ? line : line.substr(file);
   }
 
-  test::ScratchFolder folder;
+  tests::ScratchFolder folder;
 };
 
 TEST_F(LoadExperimentTest, EveryKeyIsOptionalAndMeansNoDifference) {

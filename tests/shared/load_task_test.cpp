@@ -8,14 +8,15 @@
 #include "shared/config/load.h"
 #include "shared/task/inserted.h"
 #include "tests/shared/slide_robot.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace tenon {
 namespace {
 
-using test::refusal;
-using test::replaced;
-using test::ScratchFolder;
+using tests::refusal;
+using tests::replaced;
+using tests::ScratchFolder;
 
 constexpr const char* kTask = R"(name: peg
 coordinates: [x, z]

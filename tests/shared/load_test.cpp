@@ -5,16 +5,17 @@
 #include <gtest/gtest.h>
 
 #include "tests/shared/slide_robot.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace tenon {
 namespace {
 
-using test::kSlideRobot;
-using test::kSlideUrdf;
-using test::refusal;
-using test::replaced;
-using test::ScratchFolder;
+using tests::kSlideRobot;
+using tests::kSlideUrdf;
+using tests::refusal;
+using tests::replaced;
+using tests::ScratchFolder;
 
 constexpr const char* kTask = R"(name: tiny
 coordinates: [x, rz]

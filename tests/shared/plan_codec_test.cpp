@@ -2,22 +2,21 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <random>
 
 #include "shared/base/bytes.h"
 #include "shared/base/crc32c.h"
-#include "shared/base/error.h"
 #include "shared/plan/codec.h"
 #include "tests/shared/example_plans.h"
+#include "tests/support/refusal.h"
 
 namespace tenon {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-using test::documented_plan;
-using test::long_plan;
+using tests::documented_plan;
+using tests::long_plan;
 
 // Makes length and checksum right again, so that what lies behind them is looked at.
 void reseal(Bytes& bytes) {
@@ -263,12 +262,7 @@ TEST(PlanCodec, RandomDamageUnderARightChecksumIsRefusedOrHasOneEncoding) {
 }
 
 std::string refusal(const Plan& plan) {
-  try {
-    (void)encode_plan(plan);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal([&] { (void)encode_plan(plan); });
 }
 
 TEST(PlanCodec, EncodingRefusesWhatCannotBeRepresented) {

@@ -34,7 +34,7 @@ std::vector<std::uint8_t> documented_bytes() {
 TEST(PlanFormat, TheDocumentedBytesAreWhatTheCodecWrites) {
   const std::vector<std::uint8_t> bytes = documented_bytes();
   ASSERT_EQ(bytes.size(), 396U);
-  EXPECT_EQ(encode_plan(test::documented_plan()), bytes);
+  EXPECT_EQ(encode_plan(tests::documented_plan()), bytes);
 }
 
 TEST(PlanFormat, TheDocumentedBytesDecodeToTheirNotes) {

@@ -62,13 +62,13 @@ GuardedMove::Result first_result() {
 }
 
 TEST(Transition, ExpectedResultGoesToTheSuccessor) {
-  const Transition next = transition(test::documented_plan(), 0, first_result());
+  const Transition next = transition(tests::documented_plan(), 0, first_result());
   EXPECT_EQ(next.successor, 1);
   EXPECT_EQ(next.deviation, Deviation::kNone);
 }
 
 TEST(Transition, EveryDeviationFailsAndIsNamed) {
-  const Plan plan = test::documented_plan();
+  const Plan plan = tests::documented_plan();
   GuardedMove::Result result = first_result();
   result.outcome = Outcome::kReached;
   EXPECT_EQ(transition(plan, 0, result).deviation, Deviation::kUnexpectedOutcome);
@@ -91,7 +91,7 @@ TEST(Transition, EveryDeviationFailsAndIsNamed) {
 }
 
 TEST(Transition, WithoutEnvelopesTheOutcomeAloneDecides) {
-  Plan plan = test::documented_plan();
+  Plan plan = tests::documented_plan();
   plan.check_envelopes = false;
   GuardedMove::Result result = first_result();
   result.travelled[0] = 3.0;
@@ -104,7 +104,7 @@ TEST(Transition, WithoutEnvelopesTheOutcomeAloneDecides) {
 TEST(Transition, NotANumberIsOutside) {
   GuardedMove::Result result = first_result();
   result.travelled[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(transition(test::documented_plan(), 0, result).deviation, Deviation::kTravelOutside);
+  EXPECT_EQ(transition(tests::documented_plan(), 0, result).deviation, Deviation::kTravelOutside);
 }
 
 }  // namespace

@@ -5,9 +5,7 @@
 
 #include <string>
 
-#include "shared/base/error.h"
-
-namespace tenon::test {
+namespace tenon::tests {
 
 inline constexpr const char* kSlideRobot = R"(name: slide
 urdf: slide.urdf
@@ -91,15 +89,4 @@ inline std::string replaced(std::string text, const std::string& what, const std
   return at == std::string::npos ? text : text.replace(at, what.size(), by);
 }
 
-/// The line with which the work is refused.
-template <typename Work>
-std::string refusal(Work work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-}  // namespace tenon::test
+}  // namespace tenon::tests

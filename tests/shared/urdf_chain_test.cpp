@@ -8,16 +8,17 @@
 #include <string>
 
 #include "tests/shared/slide_robot.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace tenon {
 namespace {
 
 using config::UrdfChain;
-using test::kSlideUrdf;
-using test::refusal;
-using test::replaced;
-using test::ScratchFolder;
+using tests::kSlideUrdf;
+using tests::refusal;
+using tests::replaced;
+using tests::ScratchFolder;
 
 UrdfChain slide() {
   const ScratchFolder folder;

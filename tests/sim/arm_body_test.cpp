@@ -13,6 +13,7 @@
 #include "shared/base/error.h"
 #include "tests/sim/mechanics.h"
 #include "tests/sim/six_axis_cell.h"
+#include "tests/support/refusal.h"
 
 namespace tenon::sim {
 namespace {
@@ -406,13 +407,8 @@ TEST(ArmBodyTest, BacklashIsBetweenEncoderAndLink) {
 TEST(ArmBodyTest, ALinkWithoutMassIsRefusedByName) {
   Cell cell = six_axis_cell();
   cell.robot.joints[3].link.mass_kg = 0.0;
-  try {
-    const ArmBody arm(cell, empty_task(), {});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "robot six_axis: the link behind joint arm_4 has mass 0.000000 kg, must be > 0");
-  }
+  EXPECT_EQ(tests::refusal([&] { const ArmBody arm(cell, empty_task(), {}); }),
+            "robot six_axis: the link behind joint arm_4 has mass 0.000000 kg, must be > 0");
   cell = six_axis_cell();
   cell.robot.joints[5].link.inertia_kgm2(0, 0) = -1.0;
   EXPECT_THROW(ArmBody(cell, empty_task(), {}), InputError);

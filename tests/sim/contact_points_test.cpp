@@ -90,7 +90,8 @@ TEST(ContactPoints, StiffnessIsSharedAmongThoseThatPushTheSameWay) {
 /// What points on the plane z = 0 push back with, of a spring of 1 N/m.
 double force_N(const std::vector<double>& depths_m) {
   std::vector<dContactGeom> points;
-  for (const double depth_m : depths_m) points.push_back(point(Vector3::Zero(), Vector3::UnitZ(), depth_m));
+  for (const double depth_m : depths_m)
+    points.push_back(point(Vector3::Zero(), Vector3::UnitZ(), depth_m));
   const std::vector<double> part = shares(points);
   double sum_N = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) sum_N += part[i] * depths_m[i];

@@ -195,7 +195,7 @@ TEST(EdsFilesTest, EveryNodeOfARobotHasOneWithItsOwnDefaults) {
 }
 
 TEST(EdsFilesTest, TheSimulatorWritesThemForItsCell) {
-  const test::ScratchFolder folder;
+  const tests::ScratchFolder folder;
   std::filesystem::create_directory(folder.path() / "eds");
   const tests::SimProcess sim(folder.path(), "1", {"--eds", (folder.path() / "eds").string()});
   const EdsFileReader sensor(folder.get("eds/4-sensor.eds"));

@@ -7,6 +7,7 @@
 #include "shared/base/error.h"
 #include "sim/evaluation/run_line.h"
 #include "sim/evaluation/run_log.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace tenon::sim {
@@ -63,7 +64,7 @@ TEST(EvaluationRunLine, WhatIsNoWholeLineIsNone) {
 }
 
 TEST(EvaluationRunLog, HoldsWhatWasAppended) {
-  const test::ScratchFolder folder;
+  const tests::ScratchFolder folder;
   const auto file = folder.path() / "runs.jsonl";
   {
     RunLog log(file, kIdentity);
@@ -82,7 +83,7 @@ TEST(EvaluationRunLog, HoldsWhatWasAppended) {
 TEST(EvaluationRunLog, TornAnywhereItKeepsTheWholeLinesAndGoesOn) {
   const std::string whole = kIdentity + "\none\ntwo\n";
   for (std::size_t length = 0; length <= whole.size(); ++length) {
-    const test::ScratchFolder folder;
+    const tests::ScratchFolder folder;
     const auto file = folder.put("runs.jsonl", whole.substr(0, length));
     Lines kept;
     if (length >= kIdentity.size() + 5) kept.push_back("one");
@@ -99,20 +100,16 @@ TEST(EvaluationRunLog, TornAnywhereItKeepsTheWholeLinesAndGoesOn) {
 }
 
 TEST(EvaluationRunLog, AnothersRunsAreRefusedAndLeftAlone) {
-  const test::ScratchFolder folder;
+  const tests::ScratchFolder folder;
   const auto file = folder.put("runs.jsonl", "{\"seed\":2}\none\n");
-  try {
-    const RunLog log(file, kIdentity);
-    FAIL() << "taken up";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("another evaluation"), std::string::npos);
-  }
+  const std::string line = tests::refusal([&] { const RunLog log(file, kIdentity); });
+  EXPECT_NE(line.find("another evaluation"), std::string::npos) << line;
   EXPECT_THROW(static_cast<void>(read_run_log(file, kIdentity)), InputError);
   EXPECT_EQ(folder.get("runs.jsonl"), "{\"seed\":2}\none\n");
 }
 
 TEST(EvaluationRunLog, HasOneWriter) {
-  const test::ScratchFolder folder;
+  const tests::ScratchFolder folder;
   const auto file = folder.path() / "runs.jsonl";
   std::optional<RunLog> first;
   first.emplace(file, kIdentity);
@@ -122,7 +119,7 @@ TEST(EvaluationRunLog, HasOneWriter) {
 }
 
 TEST(EvaluationRunLog, WhatCannotBeOpenedIsNamed) {
-  const test::ScratchFolder folder;
+  const tests::ScratchFolder folder;
   EXPECT_THROW(RunLog(folder.path() / "none/runs.jsonl", kIdentity), InputError);
   EXPECT_THROW(static_cast<void>(read_run_log(folder.path() / "none", kIdentity)), InputError);
   EXPECT_THROW(static_cast<void>(read_run_log(folder.put("empty", ""), kIdentity)), InputError);

@@ -12,6 +12,7 @@
 #include "sim/evaluation/evaluation_json.h"
 #include "sim/evaluation/run_maker.h"
 #include "tests/sim/literal_cell.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace tenon::sim {
@@ -76,7 +77,7 @@ TEST(EvaluationRunMaker, ThreadsDoNotShowInTheResults) {
 TEST(EvaluationRunMaker, StoppedAnywhereItGoesOnToTheSameResults) {
   const std::string whole = json_of(parameters_with({}));
   for (std::size_t stop = 0; stop < 2 * kCount; stop += 3) {
-    const test::ScratchFolder folder;
+    const tests::ScratchFolder folder;
     const auto parameters = parameters_with(folder.path() / "runs.jsonl");
     {
       Evaluation evaluation = two_plans();
@@ -99,7 +100,7 @@ TEST(EvaluationRunMaker, StoppedAnywhereItGoesOnToTheSameResults) {
 
 TEST(EvaluationRunMaker, MergedShardsAreTheWholeAndWhatTheyLackIsMade) {
   const std::string whole = json_of(parameters_with({}));
-  const test::ScratchFolder folder;
+  const tests::ScratchFolder folder;
   std::size_t made = 0;
   for (std::size_t index = 0; index < 3; ++index) {
     auto shard = parameters_with(folder.path() / std::to_string(index));
@@ -116,7 +117,7 @@ TEST(EvaluationRunMaker, MergedShardsAreTheWholeAndWhatTheyLackIsMade) {
 }
 
 TEST(EvaluationRunMaker, MoreRunsAddToThoseThatAreThere) {
-  const test::ScratchFolder folder;
+  const tests::ScratchFolder folder;
   auto parameters = parameters_with(folder.path() / "runs.jsonl");
   const std::string ten = json_of(parameters);
   parameters.count = 14;
@@ -129,14 +130,10 @@ TEST(EvaluationRunMaker, MoreRunsAddToThoseThatAreThere) {
 }
 
 void expect_refused(const std::string& log, const std::string& named) {
-  const test::ScratchFolder folder;
+  const tests::ScratchFolder folder;
   const auto parameters = parameters_with(folder.put("runs.jsonl", log));
-  try {
-    static_cast<void>(json_of(parameters));
-    FAIL() << log;
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
-  }
+  const std::string line = tests::refusal([&] { static_cast<void>(json_of(parameters)); });
+  EXPECT_NE(line.find(named), std::string::npos) << line;
 }
 
 TEST(EvaluationRunMaker, ALogThatIsDamagedOrContradictsTheSeedIsRefused) {

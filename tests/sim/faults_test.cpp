@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "shared/base/error.h"
 #include "sim/bus/virtual_bus.h"
 #include "sim/faults/bus_faults.h"
 #include "sim/faults/fault_spec.h"
 #include "sim/faults/faulty_bus.h"
 #include "sim/faults/frame_sender.h"
+#include "tests/support/refusal.h"
 
 namespace tenon::sim {
 namespace {
@@ -37,12 +37,7 @@ TEST(FaultSpec, EveryKeyIsRead) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    (void)parse_fault(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal([&] { (void)parse_fault(text); });
 }
 
 TEST(FaultSpec, WhatIsWrongIsSaidInOneLineWithItsBound) {

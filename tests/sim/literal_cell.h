@@ -5,7 +5,6 @@
 //   cycle():  SYNC ──> cell steps ──> feedback read ──> controlword and target of each axis sent
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -4,9 +4,7 @@
 
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <initializer_list>
-#include <optional>
 #include <string>
 #include <vector>
 

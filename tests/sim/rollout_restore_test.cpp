@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <memory>
 #include <random>
 #include <thread>
 #include <vector>

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "shared/canopen/constants.h"
 
 namespace tenon::sim {

@@ -3,7 +3,6 @@
 // balls and rods for its links; a payload beyond the sensor. Nothing to touch.
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <string>

@@ -34,7 +34,7 @@ class TenonSimTest : public ::testing::Test {
     return connection;
   }
 
-  test::ScratchFolder folder;
+  tests::ScratchFolder folder;
 };
 
 std::string ask(int connection, const std::string& line, const std::string& wanted) {

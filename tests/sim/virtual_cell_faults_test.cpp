@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <string>
 
-#include "shared/base/error.h"
 #include "sim/virtual_arm/virtual_cell.h"
 #include "tests/sim/literal_cell.h"
 #include "tests/sim/six_axis_cell.h"
+#include "tests/support/refusal.h"
 
 namespace tenon::sim {
 namespace {
@@ -100,13 +100,11 @@ TEST(VirtualCellFaultsTest, AStaleSensorRepeatsItsCounter) {
 }
 
 TEST(VirtualCellFaultsTest, AFaultOfANodeThatDoesNotExistIsRefused) {
-  try {
-    const VirtualCell cell(gantry_cell(), wall_task(), with(FaultKind::kBrakeFailure, 9, 0.0));
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "fault brake-failure: node 9 is neither a joint nor the sensor of robot gantry");
-  }
+  EXPECT_EQ(tests::refusal([] {
+              const VirtualCell cell(gantry_cell(), wall_task(),
+                                     with(FaultKind::kBrakeFailure, 9, 0.0));
+            }),
+            "fault brake-failure: node 9 is neither a joint nor the sensor of robot gantry");
   // A fault of the bus is no device's.
   EXPECT_NO_THROW(VirtualCell(gantry_cell(), wall_task(), with(FaultKind::kDrop, 9, 0.0)));
 }

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
 
 #include "shared/base/error.h"
 #include "shared/config/load.h"

@@ -23,8 +23,6 @@ namespace {
 
 using hw::SocketcanBus;
 
-constexpr std::uint32_t kMbit_bps = 1'000'000;
-
 TEST(CanUtils, WhatCansendSendsIsReceived) {
   const VirtualInterface vcan("vcan0");
   SocketcanBus bus("vcan0", kMbit_bps, 1);
@@ -77,7 +75,7 @@ TEST(CanUtils, CandumpAndOurLogAgreeFrameByFrame) {
   ASSERT_TRUE(run.lockstep().prepare()) << run.lockstep().result().reason;
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(run.lockstep().cycle());
 
-  const test::ScratchFolder scratch;
+  const tests::ScratchFolder scratch;
   hw::CandumpLog(scratch.path() / "ours.log", "vcan0").drain(*ring);
   const std::string ours = scratch.get("ours.log");
   const auto frames = static_cast<std::size_t>(std::count(ours.begin(), ours.end(), '\n'));

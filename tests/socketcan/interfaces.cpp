@@ -25,7 +25,7 @@ std::vector<std::string> words(const std::string& line) {
 }
 
 std::string run(const std::string& command_line) {
-  const test::ScratchFolder scratch;
+  const tests::ScratchFolder scratch;
   tests::ChildProcess process(scratch.path(), words(command_line));
   const int status = process.wait();
   if (status != 0) {
@@ -79,6 +79,10 @@ void InterruptHeld::mask(bool masked) const {
   command = masked ? command | kInterruptDisable : command & ~kInterruptDisable;
   config.seekp(kCommandRegister);
   config.put(static_cast<char>(command & 0xFF)).put(static_cast<char>(command >> 8));
+}
+
+CanFrame numbered(unsigned i) {
+  return {0x100 + i % 0x100, false, false, 2, {std::uint8_t(i), std::uint8_t(i >> 8)}};
 }
 
 bool receive_soon(CanBus& bus, ReceivedFrame& received) {

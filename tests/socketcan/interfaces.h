@@ -2,6 +2,7 @@
 // CAN interfaces of the kernel, set up and taken down by the tests themselves with the system's own
 // programs. Needs root, or a user and network namespace of one's own.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "tests/support/scratch_folder.h"
 
 namespace tenon::socketcan {
+
+inline constexpr std::uint32_t kMbit_bps = 1'000'000;
 
 /// The words of a line; none contains a space.
 [[nodiscard]] std::vector<std::string> words(const std::string& line);
@@ -34,7 +37,7 @@ class VirtualInterface {
 /// The two controllers of the guest, can0 and can1, up while this is there.
 class Controllers {
  public:
-  explicit Controllers(unsigned bitrate_bps = 1'000'000);
+  explicit Controllers(std::uint32_t bitrate_bps = kMbit_bps);
   Controllers(const Controllers&) = delete;
   Controllers& operator=(const Controllers&) = delete;
   ~Controllers();
@@ -64,9 +67,12 @@ class Beside {
   [[nodiscard]] tests::ChildProcess& process() { return process_; }
 
  private:
-  test::ScratchFolder scratch_;
+  tests::ScratchFolder scratch_;
   tests::ChildProcess process_;
 };
+
+/// A frame of two bytes that tells which it is.
+[[nodiscard]] CanFrame numbered(unsigned i);
 
 /// Waits for a frame, for a bounded time that no test comes near.
 [[nodiscard]] bool receive_soon(CanBus& bus, ReceivedFrame& received);

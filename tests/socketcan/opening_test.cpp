@@ -5,23 +5,17 @@
 #include <string>
 
 #include "hw/can/open_bus.h"
-#include "shared/base/error.h"
 #include "tests/socketcan/box_run.h"
 #include "tests/socketcan/interfaces.h"
+#include "tests/support/refusal.h"
 
 namespace tenon::socketcan {
 namespace {
 
-constexpr std::uint32_t kMbit_bps = 1'000'000;
-
-/// The line of the refusal; empty where it is opened.
+/// The line of the refusal, or "accepted".
 std::string refusal(const std::string& interface, std::uint32_t burst_frames = 1) {
-  try {
-    (void)hw::open_bus("socketcan:" + interface, kMbit_bps, burst_frames);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return tests::refusal(
+      [&] { (void)hw::open_bus("socketcan:" + interface, kMbit_bps, burst_frames); });
 }
 
 TEST(SocketcanOpening, AnInterfaceThatIsNotThereOrNoCanIsRefused) {
@@ -33,7 +27,7 @@ TEST(SocketcanOpening, AnInterfaceThatIsNotThereOrNoCanIsRefused) {
 
 TEST(SocketcanOpening, AVirtualInterfaceHasNoBitrateAndTakesAnyBurst) {
   const VirtualInterface vcan("vcan0");
-  EXPECT_EQ(refusal("vcan0", 100'000), "");
+  EXPECT_EQ(refusal("vcan0", 100'000), "accepted");
   run("ip link set vcan0 down");
   EXPECT_EQ(refusal("vcan0"),
             "CAN bus socketcan:vcan0: the interface is down; 'ip link set vcan0 up'");
@@ -42,7 +36,7 @@ TEST(SocketcanOpening, AVirtualInterfaceHasNoBitrateAndTakesAnyBurst) {
 TEST(Sja1000Opening, AControllerIsOpenedAtTheRobotsBitrateOnly) {
   {
     const Controllers controllers(kMbit_bps);
-    EXPECT_EQ(refusal("can0"), "");
+    EXPECT_EQ(refusal("can0"), "accepted");
   }
   EXPECT_EQ(refusal("can0"),
             "CAN bus socketcan:can0: the interface is down; "
@@ -66,7 +60,7 @@ TEST(Sja1000Opening, AControllerThatOnlyListensIsRefused) {
 TEST(Sja1000Opening, ATransmitQueueThatDoesNotHoldACycleIsRefused) {
   const Controllers controllers(kMbit_bps);
   run("ip link set can0 txqueuelen 5");
-  EXPECT_EQ(refusal("can0", 5), "");
+  EXPECT_EQ(refusal("can0", 5), "accepted");
   EXPECT_EQ(refusal("can0", 7),
             "CAN bus socketcan:can0: the transmit queue holds 5 frames, a cycle sends 7 at once; "
             "'ip link set can0 txqueuelen 100'");
@@ -74,7 +68,7 @@ TEST(Sja1000Opening, ATransmitQueueThatDoesNotHoldACycleIsRefused) {
 
 /// What tenon-exec says when it is to run the gantry on can0; it is to say it with status 2.
 std::string executors_refusal() {
-  const test::ScratchFolder scratch;
+  const tests::ScratchFolder scratch;
   tests::ChildProcess exec(scratch.path(),
                            {TENON_EXEC_EXE, "--cell", TENON_SOURCE_DIR "/hw/cells/gantry3.yaml",
                             "--plan", box_plan_file(), "--can", "socketcan:can0", "--black-box",

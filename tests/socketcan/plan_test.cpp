@@ -16,7 +16,6 @@ namespace {
 using executor::EndReason;
 using hw::SocketcanBus;
 
-constexpr std::uint32_t kMbit_bps = 1'000'000;
 constexpr std::uint32_t kBurst_frames = 5;
 
 void expect_brakes(const sim::Truth& truth) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -17,12 +16,6 @@ namespace tenon::socketcan {
 namespace {
 
 using hw::SocketcanBus;
-
-constexpr std::uint32_t kMbit_bps = 1'000'000;
-
-CanFrame numbered(unsigned i) {
-  return {0x100 + i % 0x100, false, false, 2, {std::uint8_t(i), std::uint8_t(i >> 8)}};
-}
 
 CanFrame drawn(std::mt19937& random) {
   CanFrame frame;

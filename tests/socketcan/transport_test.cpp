@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "hw/can/monotonic_clock.h"
@@ -16,10 +15,6 @@ namespace {
 using hw::SocketcanBus;
 
 constexpr std::uint32_t kAnyBitrate_bps = 1'000'000;
-
-CanFrame numbered(unsigned i) {
-  return {0x100 + i % 0x100, false, false, 2, {std::uint8_t(i), std::uint8_t(i >> 8)}};
-}
 
 class SocketcanTransport : public testing::Test {
  protected:

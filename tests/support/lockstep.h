@@ -4,7 +4,6 @@
 // are given.
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>

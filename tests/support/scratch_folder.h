@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace tenon::test {
+namespace tenon::tests {
 
 class ScratchFolder {
  public:
@@ -51,4 +51,4 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace tenon::test
+}  // namespace tenon::tests
