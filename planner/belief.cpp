@@ -46,8 +46,9 @@ Belief cross_polytope(const Task& task, const Start& start) {
       Vector6 displacement = Vector6::Zero();
       displacement[axis] = sign * offset;
       const double friction = slippery ? task.friction.low : task.friction.high;
-      belief.particles.push_back(
-          {displaced(start.pose, displacement), {}, {friction, task.contact_stiffness_Npm, task.oversize_m}});
+      belief.particles.push_back({displaced(start.pose, displacement),
+                                  {},
+                                  {friction, task.contact_stiffness_Npm, task.oversize_m}});
       slippery = !slippery;
     }
     slippery = !slippery;
