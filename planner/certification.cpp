@@ -1,8 +1,10 @@
 #include "planner/certification.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "planner/heuristics.h"
+#include "planner/plan_builder.h"
 #include "planner/text.h"
 #include "shared/base/error.h"
 #include "shared/plan/codec.h"
@@ -12,7 +14,7 @@ namespace tenon::planner {
 namespace {
 
 constexpr double kPoseAgreement_m = 0.5e-3;
-constexpr double kPoseAgreement_rad = 0.2 * 3.14159265358979323846 / 180.0;
+constexpr double kPoseAgreement_rad = 0.2 * std::numbers::pi / 180.0;
 
 Belief ends(const std::vector<Chain>& chains) {
   Belief belief;
@@ -32,7 +34,8 @@ std::string difference(const GuardedMove::Result& move, const GuardedMove::Resul
   }
   const Vector6 off = displacement_between(reference.pose, move.pose);
   if (off.head<3>().norm() > kPoseAgreement_m || off.tail<3>().norm() > kPoseAgreement_rad) {
-    return format("pose differs by %.3f mm", 1e3 * off.head<3>().norm());
+    return format("pose differs by %.3f mm and %.3f degrees", 1e3 * off.head<3>().norm(),
+                  180.0 / std::numbers::pi * off.tail<3>().norm());
   }
   return {};
 }
@@ -138,25 +141,23 @@ const Start& start_of(const Plan& plan, const Task& task) {
 
 namespace {
 
-// What the plan says of its task, as far as success is judged by it. The file holds 32-bit floats.
+/// All that a plan says besides its steps' ways and outcomes follows from its task.
 void check_same_task(const Plan& plan, const Task& task) {
-  const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-5 * std::abs(b) + 1e-9; };
-  const auto refuse = [&](const char* what) {
+  std::vector<Vector6> displacements;
+  for (const Step& step : plan.steps) displacements.push_back(step.displacement);
+  const Plan drafted = draft_plan(task, start_of(plan, task),
+                                  {plan.contact_stiffness_Npm, plan.latency_max_s}, displacements);
+  const auto demand = [&](bool same, const char* what) {
+    if (same) return;
     throw InputError(std::string("plan: its ") + what + " is not that of task '" + task.name +
                      "': plan again, or give the --cell that it was made for");
   };
-  if (!plan.goal.position_m.isApprox(task.goal.position_m, 1e-5) ||
-      plan.goal.orientation.angularDistance(task.goal.orientation) > 1e-5) {
-    refuse("goal");
-  }
-  if (!same(plan.goal_tolerance_m, task.goal_tolerance_m)) refuse("goal tolerance");
-  if (!same(plan.compliance.mass_kg, task.compliance.mass_kg) ||
-      !same(plan.compliance.damping_Nspm, task.compliance.damping_Nspm) ||
-      !same(plan.compliance.stiffness_Npm, task.compliance.stiffness_Npm) ||
-      plan.compliance.compliant_axes != task.compliance.compliant_axes) {
-    refuse("compliance");
-  }
-  if (!same(plan.force_limit_N, task.force_limit_N)) refuse("force limit");
+  demand(plan.goal == drafted.goal, "goal");
+  demand(plan.goal_tolerance_m == drafted.goal_tolerance_m, "goal tolerance");
+  demand(plan.compliance == drafted.compliance, "compliance");
+  demand(plan.force_limit_N == drafted.force_limit_N, "force limit");
+  demand(plan.torque_limit_Nm == drafted.torque_limit_Nm, "torque limit");
+  demand(plan.parameter_sets == drafted.parameter_sets, "set of speeds, thresholds and times");
 }
 
 }  // namespace

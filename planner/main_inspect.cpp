@@ -13,6 +13,7 @@
 #include "planner/inspection.h"
 #include "planner/summary.h"
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
 #include "sim/rollout/ode_rollout.h"
@@ -62,7 +63,7 @@ std::vector<std::uint8_t> bytes_of(const std::string& file) {
 }
 
 // The task as the planner had it.
-Task task_of(const Plan& plan, const std::string& file, const std::string& cell_file) {
+planner::CellFit task_of(const Plan& plan, const std::string& file, const std::string& cell_file) {
   Task task = load_task(file);
   if (task.hash != plan.task_hash) {
     std::fprintf(stderr,
@@ -70,14 +71,17 @@ Task task_of(const Plan& plan, const std::string& file, const std::string& cell_
                  "made from\n",
                  file.c_str());
   }
-  if (cell_file.empty()) return task;
-  return planner::fit_to_cell(task, load_cell(cell_file)).task;
+  if (!cell_file.empty()) return planner::fit_to_cell(task, load_cell(cell_file));
+  planner::CellFit fit{task, {}, {}};
+  fit.assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
+  return fit;
 }
 
 // The draws that the planner made, again. Their seed is always the same.
 bool validates(std::FILE* out, const Plan& plan, const Task& task, planner::RolloutPool& pool) {
   planner::ValidationParameters parameters;
   parameters.draws = plan.draws;
+  parameters.seed = planner::kEstimateSeed;
   const planner::Validation validation =
       planner::validate(plan, task, planner::start_of(plan, task), parameters, pool);
   const bool same = validation.at_goal() == plan.draws_at_goal;
@@ -91,7 +95,17 @@ bool recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint
     throw InputError(a.plan + ": draws = " + std::to_string(plan.draws) + ", must be at most " +
                      std::to_string(kDrawsMax) + " to be repeated");
   }
-  const Task task = task_of(plan, a.recertify, a.cell);
+  const auto [task, assumptions, changes] = task_of(plan, a.recertify, a.cell);
+  const auto same = [](double x, double y) { return std::abs(x - y) <= 1e-6 * std::abs(y); };
+  if (!same(plan.contact_stiffness_Npm, assumptions.contact_stiffness_Npm) ||
+      !same(plan.latency_max_s, assumptions.latency_max_s)) {
+    throw InputError(
+        format("%s: made for contact stiffness %g N/m and latency %g s, this task%s has "
+               "%g N/m and %g s: give the --cell that it was made for",
+               a.plan.c_str(), plan.contact_stiffness_Npm, plan.latency_max_s,
+               a.cell.empty() ? "" : " on this cell", assumptions.contact_stiffness_Npm,
+               assumptions.latency_max_s));
+  }
   planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
   const planner::Certification certification = planner::certify(bytes, task, pool);
   std::FILE* out = a.json == "-" ? stderr : stdout;
@@ -114,15 +128,18 @@ bool recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint
     std::fprintf(out, "certified: NO, the plan was made from another version of %s\n",
                  a.recertify.c_str());
   }
+  const bool checks = plan.method != PlanMethod::kMha || plan.check_envelopes;
+  if (!checks) std::fprintf(out, "certified: NO, the plan checks no envelopes\n");
   const bool valid = validates(out, plan, task, pool);
-  return certification.holds() && same_cost && same_task && valid;
+  return certification.holds() && same_cost && same_task && checks && valid;
 }
 
 void write_report(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
-  const Task task = task_of(plan, a.task, a.cell);
+  const Task task = task_of(plan, a.task, a.cell).task;
   planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
   planner::ValidationParameters few;
   few.draws = kReportDraws;
+  few.seed = planner::kEstimateSeed;
   write_file(a.report,
              planner::html_report(
                  plan, task, planner::certify(bytes, task, pool),

@@ -101,7 +101,7 @@ class Planning {
   }
 
   PlanReport report_with_counters() {
-    report_.states = graph_->size();
+    report_.states += graph_->size();
     report_.search_moves = succ_.counters();
     report_.attractor_moves = long_succ_.counters();
     return std::move(report_);
@@ -153,8 +153,7 @@ class Planning {
     Certification at_contact_speed = certified(slow);
     if (!at_contact_speed.holds()) return refutation_of(at_contact_speed);
     if (is_baseline()) {
-      Validation validation = validated(slow);
-      complete(slow, std::move(at_contact_speed), std::move(validation));
+      complete(slow, std::move(at_contact_speed));
       return std::nullopt;
     }
     std::vector<double> distances_m =
@@ -174,7 +173,7 @@ class Planning {
       distances_m.assign(distances_m.size(), 0.0);
       return refutation_of(certification);
     }
-    Validation validation = validated(plan);
+    const Validation validation = validated(plan, kSearchSeed);
     for (const Draw& draw : validation.draws) {
       if (draw.at_goal || draw.mahalanobis > task_.particle_sigmas) continue;
       distances_m.assign(distances_m.size(), 0.0);
@@ -185,7 +184,12 @@ class Planning {
       return Refutation{{}, std::nullopt, "a draw met a contact before the tool was slow"};
     }
     const std::vector<Chain> good = good_chains(certification, validation);
-    complete(with_envelopes(plan, task_, good), std::move(certification), std::move(validation));
+    const Plan judged = with_envelopes(plan, task_, good);
+    for (const Chain& chain : good) {
+      if (first_deviation(judged, chain) == chain.moves.size()) continue;
+      throw std::logic_error("an envelope does not hold what it was made from");
+    }
+    complete(judged, std::move(certification));
     return std::nullopt;
   }
 
@@ -209,6 +213,7 @@ class Planning {
                                     [&](const Particle& p) { return same_start(p, start); });
     if (known == particles.end()) {
       particles.push_back(start);
+      report_.states += graph_->size();
       graph_.emplace(task_, belief_, attractors_, succ_);
       report_.refusals.push_back(refutation.why + "; it becomes a particle");
       return;
@@ -259,10 +264,11 @@ class Planning {
     return result;
   }
 
-  Validation validated(const Plan& plan) {
+  Validation validated(const Plan& plan, std::uint64_t seed) {
     Validation result = timed(now_s_, report_.times.validation_s, [&] {
       ValidationParameters parameters = options_.validation;
-      parameters.stop_when_refuted = !is_baseline();
+      parameters.seed = seed;
+      parameters.stop_when_refuted = seed == kSearchSeed;
       return validate(plan, task_, start_, parameters, pool_);
     });
     report_.validation_moves += result.moves();
@@ -296,19 +302,16 @@ class Planning {
     return shortened;
   }
 
-  void complete(Plan plan, Certification certification, Validation validation) {
+  void complete(Plan plan, Certification certification) {
+    const Validation estimate = validated(plan, kEstimateSeed);
     plan.cost = certification.cost;
     plan.bound = std::isfinite(report_.search.bound) ? report_.search.bound : 0.0;
-    plan.draws = static_cast<std::uint32_t>(validation.draws.size());
-    plan.draws_at_goal = static_cast<std::uint32_t>(validation.at_goal());
+    plan.draws = static_cast<std::uint32_t>(estimate.draws.size());
+    plan.draws_at_goal = static_cast<std::uint32_t>(estimate.at_goal());
     report_.bytes = encode_plan(plan);
     report_.plan = through_bytes(plan);
-    for (const Chain& chain : good_chains(certification, validation)) {
-      if (first_deviation(*report_.plan, chain) == chain.moves.size()) continue;
-      throw std::logic_error("an envelope does not hold what it was made from");
-    }
     report_.certification = std::move(certification);
-    report_.validation = std::move(validation);
+    report_.validation = estimate;
     finish(PlanStatus::kPlanned, "");
   }
 

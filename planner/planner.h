@@ -66,7 +66,7 @@ struct PlanReport {
   std::uint64_t certification_moves = 0;
   std::uint64_t validation_moves = 0;
   Certification certification;
-  Validation validation;
+  Validation validation;  ///< by the draws of kEstimateSeed
   PlannerTimes times;
 };
 

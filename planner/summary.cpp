@@ -79,10 +79,13 @@ std::string cost_text(const Plan& plan) {
 }
 
 std::string estimate_text(const Validation& validation, const Task& task) {
-  return format("%zu of %zu draws end at the goal (%zu of %zu within %g sigma)",
-                validation.at_goal(), validation.draws.size(),
-                validation.at_goal_within(task.particle_sigmas),
-                validation.within(task.particle_sigmas), task.particle_sigmas);
+  const auto arrived = std::count_if(validation.rim.begin(), validation.rim.end(),
+                                     [](const Draw& draw) { return draw.at_goal; });
+  return format(
+      "%zu of %zu draws end at the goal (%zu of %zu within %g sigma), and %zu of %zu on the rim",
+      validation.at_goal(), validation.draws.size(),
+      validation.at_goal_within(task.particle_sigmas), validation.within(task.particle_sigmas),
+      task.particle_sigmas, static_cast<std::size_t>(arrived), validation.rim.size());
 }
 
 std::string step_table(const Plan& plan) {

@@ -237,12 +237,12 @@ void read_physics(const Value& value, Task& task) {
   task.contact_stiffness_Npm = map.number("contact_stiffness_Npm", {1e2, 1e8});
   map.optional_number("oversize_m", {0.0, 0.01}, task.oversize_m);
 
-  const auto step = map.find("rollout_step_s");
-  if (!step) return;
   // A longer way within one step sinks too deep before the contact answers.
   constexpr double kStepTravelMax_m = 0.5e-3;
-  const double step_max_s = kStepTravelMax_m / task.motion.speeds.approach_mps;
-  task.rollout_step_us = microseconds(step->number({1e-4, std::min(0.01, step_max_s)}));
+  const double step_max_s = std::min(0.01, kStepTravelMax_m / task.motion.speeds.approach_mps);
+  double step_s = std::min(0.002, step_max_s);
+  map.optional_number("rollout_step_s", {1e-4, step_max_s}, step_s);
+  task.rollout_step_us = microseconds(step_s);
 }
 
 /// With the variant's name behind it, as long as a plan can hold.

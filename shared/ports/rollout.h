@@ -59,7 +59,7 @@ class Rollout {
                                                std::int64_t step_us,
                                                std::vector<TraceSample>* trace = nullptr) = 0;
 
-  /// Whether the held part at this tool pose overlaps the environment.
+  /// Whether the held part, as large as it may be, overlaps the environment at this tool pose.
   [[nodiscard]] virtual bool in_collision(const Pose& tool_pose) = 0;
 
   /// Another instance for another thread.

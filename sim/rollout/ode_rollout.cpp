@@ -76,7 +76,7 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
 
 bool OdeRollout::in_collision(const Pose& tool_pose) {
   physics_->tool.place(tool_pose);
-  physics_->scene.set_oversize(0.0);
+  physics_->scene.set_oversize(task_.oversize_m);
   return physics_->scene.overlap_m() > kCollision_m;
 }
 

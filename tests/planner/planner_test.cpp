@@ -77,6 +77,7 @@ TEST(Planner, AStartThatRefutesAPathBecomesAParticle) {
     EXPECT_NE(refusal.find("missed the goal; it becomes a particle"), std::string::npos) << refusal;
   }
   EXPECT_LE(report.refusals.size(), 2U);
+  EXPECT_LE(report.plan->bound, task.w1 * task.w2);
 }
 
 TEST(Planner, AnOutcomeThatNoDrawHadLeadsToFail) {

@@ -137,10 +137,12 @@ TEST(RolloutRestore, AnOversizedPartIsThatParticlesAlone) {
   EXPECT_GT(end(0.003).pose.position_m.z(), 0.0);
   EXPECT_EQ(end(0.001).outcome, Outcome::kReached);
   EXPECT_EQ(end(0.0).pose.position_m.z(), end(0.001).pose.position_m.z());
-  Pose tilted;
-  tilted.position_m = {0.0007, 0.0, -0.01};
-  (void)end(0.003);
-  EXPECT_FALSE(rollout.in_collision(tilted)) << "a start is free as drawn";
+  Task larger = round_peg();
+  larger.oversize_m = 0.003;
+  Pose inside;
+  inside.position_m.z() = -0.01;
+  EXPECT_FALSE(rollout.in_collision(inside));
+  EXPECT_TRUE(OdeRollout(larger).in_collision(inside));
 }
 
 TEST(RolloutRestore, OtherThreadsRepeatEveryMove) {

@@ -33,11 +33,11 @@ constexpr const char* kUsage =
 
 constexpr const char* kLegend =
     "Ours beside the paper's (Kim and Likhachev, Tables I to IV).\n"
-    "time: attractors and search, until there is a path. cost: the paper does not print its\n"
-    "weights, ours reproduce only the size. nodes: of the path, start and goal included.\n"
-    "first path: expansions until there is a path, as the paper counts them; ours count that of\n"
-    "the goal, which simulates nothing. expansions: those after refuted paths too. moves:\n"
-    "simulated until there is a path, attractors included; the paper does not print them: its\n"
+    "time: attractors and search, of all rounds. cost: the paper does not print its weights, ours\n"
+    "reproduce only the size. nodes: of the path, start and goal included. first path:\n"
+    "expansions until there is a path, as the paper counts them; ours count that of the goal,\n"
+    "which simulates nothing. expansions: those after refuted paths too; the paper refutes none.\n"
+    "moves: simulated by all searches, attractors included; the paper does not print them: its\n"
     "expansions times particles times primitives. error: mean and standard deviation of the\n"
     "particles' distances from the goal at the end. physics: as planned, half the time step,\n"
     "lowest and highest friction. draws at goal: random starts of the validation, all of them and\n"
