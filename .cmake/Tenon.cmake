@@ -114,13 +114,14 @@ function(tenon_library name)
   target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
 endfunction()
 
-# An executable out of one thin main that composes libraries. Does nothing while SOURCE is missing.
+# An executable out of one thin main that composes libraries. SOURCE may be a pattern for a main and its
+# parts (main_NAME.cpp, main_NAME_PART.cpp). Does nothing while it is missing.
 function(tenon_main name source)
   file(GLOB found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
   if(NOT found)
     return()
   endif()
-  add_executable(${name} ${source})
+  add_executable(${name} ${found})
   set_target_properties(${name} PROPERTIES TENON_ROW ${name})
   tenon_check_dependencies(${name} ${ARGN})
   target_compile_definitions(${name} PRIVATE TENON_VERSION="${PROJECT_VERSION}")

@@ -10,42 +10,32 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "executor/controller.h"
-#include "executor/cycle_runner.h"
-#include "executor/dry_run/dry_run.h"
-#include "executor/plan_check.h"
-#include "executor/telemetry/run_result.h"
 #include "hw/bus_load.h"
-#include "hw/canopen_arm.h"
-#include "hw/describe_fault.h"
 #include "hw/response_times.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
-#include "shared/task/inserted.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/evaluation_html.h"
 #include "sim/evaluation/evaluation_json.h"
+#include "sim/evaluation/figure_files.h"
 #include "sim/evaluation/run_maker.h"
 #include "sim/evaluation/summary.h"
-#include "sim/lockstep/lockstep.h"
-#include "sim/lockstep/virtual_link.h"
+#include "sim/main_evaluate_chain.h"
 #include "sim/virtual_arm/environment_offset.h"
-#include "sim/virtual_arm/start_joints.h"
-#include "sim/virtual_arm/virtual_cell.h"
 
 namespace {
 
 using namespace tenon;
+namespace fs = std::filesystem;
 
 struct CommandLine {
   std::string cell;
@@ -62,143 +52,10 @@ struct CommandLine {
   std::string runs;
   std::string json;
   std::string report;
+  std::string summary;
+  std::string figures;
   std::string black_box;
 };
-
-// --- One run -------------------------------------------------------------------------------------
-
-/// What a plan's runs share.
-struct Prepared {
-  executor::DryRun dry_run;
-  JointVector joints{};  ///< where the arm stands at first
-};
-
-Prepared prepare(const Cell& cell, const sim::Candidate& candidate) {
-  Prepared prepared{executor::dry_run(candidate.plan, cell),
-                    sim::start_joints(cell, candidate.start.pose)};
-  std::vector<std::string> refusals = executor::check_plan(candidate.plan, cell);
-  refusals.insert(refusals.end(), prepared.dry_run.refusals.begin(),
-                  prepared.dry_run.refusals.end());
-  if (!refusals.empty()) {
-    throw InputError(candidate.file + ": cell '" + cell.name +
-                     "' cannot execute this plan: " + refusals.front());
-  }
-  return prepared;
-}
-
-sim::VirtualCell::Options world_of(const sim::Candidate& candidate, const Prepared& prepared,
-                                   const sim::Trial& trial) {
-  sim::VirtualCell::Options options;
-  options.start = candidate.start.name;
-  options.seed = trial.seed;
-  options.offset = trial.offset;
-  options.world = trial.world;
-  options.joints = prepared.joints;
-  return options;
-}
-
-/// Executor, CANopen master, bus and virtual arm in virtual time. Made, used and gone on one
-/// thread.
-class Chain {
- public:
-  Chain(const Cell& cell, const Task& task, const sim::Candidate& candidate,
-        const Prepared& prepared, const sim::Trial& trial,
-        const executor::CycleRunner::Parameters& loop)
-      : cell_(cell),
-        task_(task),
-        loop_(loop),
-        link_({.bitrate_bps = cell.robot.bitrate_bps, .seed = trial.seed}, cell.robot.master_node),
-        arm_(cell.robot, link_.master()),
-        controller_(cell, prepared.dry_run, {}),
-        runner_(arm_, controller_, nullptr, loop_),
-        virtual_cell_(cell, task, world_of(candidate, prepared, trial)),
-        time_(arm_, virtual_cell_, link_,
-              {.cycle_ns = std::int64_t{1000} * cell.robot.cycle_us,
-               .feedback_deadline = loop_.feedback_deadline}) {}
-
-  void run() {
-    constexpr std::int64_t kCyclesMax = 1'000'000;
-    if (!time_.prepare()) return;
-    while (time_.statistics().cycles < kCyclesMax && time_.cycle(runner_)) {
-      plan_ran_ = plan_ran_ || controller_.state() == executor::State::kRunning;
-    }
-  }
-
-  [[nodiscard]] sim::TrialResult result() const {
-    const executor::RunResult run = told();
-    const sim::Truth truth = virtual_cell_.truth();
-    sim::TrialResult result;
-    result.done = run.exit_code == 0;
-    result.at_goal = truth.within_tolerance && inserted(task_, truth.tool);
-    result.ending = to_string(run.reason);
-    result.reason = run.message;
-    result.steps = run.steps.size();
-    result.duration_s = run.duration_s;
-    if (plan_ran_) result.step = static_cast<int>(controller_.runner().step());
-    if (!run.steps.empty() && run.steps.back().step == controller_.runner().step()) {
-      result.outcome = to_string(run.steps.back().result.outcome);
-    }
-    result.error = truth.error;
-    result.contact_force_N_max = truth.contact_force_N_max;
-    if (truth.solver_messages > 0) {
-      result.done = false;
-      result.ending = sim::kNoPhysics;
-      result.reason = format("the physics solver gave up %zu times; the executor says: ",
-                             static_cast<std::size_t>(truth.solver_messages)) +
-                      run.message;
-    }
-    return result;
-  }
-
-  void print() const {
-    for (const executor::StepReport& step : told().steps) {
-      std::printf("%s\n", executor::step_line(step).c_str());
-    }
-    std::printf("%s\n%s", told().message.c_str(), sim::describe(virtual_cell_.truth()).c_str());
-  }
-
-  [[nodiscard]] const executor::BlackBox& black_box() const { return runner_.black_box(); }
-
- private:
-  [[nodiscard]] executor::RunResult told() const {
-    return executor::gather_result(controller_, runner_, 0,
-                                   hw::describe(arm_.fault(), cell_.robot));
-  }
-
-  const Cell& cell_;
-  const Task& task_;
-  const executor::CycleRunner::Parameters loop_;
-  sim::VirtualLink link_;
-  hw::CanopenArm arm_;
-  executor::Controller controller_;
-  executor::CycleRunner runner_;
-  sim::VirtualCell virtual_cell_;
-  sim::Lockstep time_;
-  bool plan_ran_ = false;
-};
-
-/// What is kept of the cycles of a run that is told.
-constexpr double kToldCycles_s = 60.0;
-
-/// @param look called with a run that is told, once it has ended; empty: it is not told
-sim::TrialResult execute(const Cell& cell, const sim::Evaluation& evaluation, std::size_t plan,
-                         const Prepared& prepared, const sim::Trial& trial,
-                         const std::function<void(const Chain&)>& look = {}) {
-  executor::CycleRunner::Parameters loop;
-  if (look) loop.black_box_s = kToldCycles_s;
-  std::optional<Chain> chain;
-  try {
-    chain.emplace(cell, evaluation.task, evaluation.candidates[plan], prepared, trial, loop);
-  } catch (const InputError& error) {
-    sim::TrialResult result;
-    result.ending = sim::kNoWorld;
-    result.reason = error.what();
-    return result;
-  }
-  chain->run();
-  if (look) look(*chain);
-  return chain->result();
-}
 
 // --- What is evaluated ------------------------------------------------------------------------
 
@@ -247,6 +104,10 @@ sim::Evaluation evaluation_of(const CommandLine& line, const Cell& cell) {
     candidate.plan = load_plan(file);
     candidate.start = sim::find_start(evaluation.task, candidate.plan.start_name);
     for (const sim::Candidate& other : evaluation.candidates) {
+      if (!line.figures.empty() && fs::path(file).stem() == fs::path(other.file).stem()) {
+        throw InputError("--figures " + line.figures + ": the figures of " + file + " and " +
+                         other.file + " would have the same names; rename one of them");
+      }
       if (other.hash == candidate.hash) {
         throw InputError("--plan " + file + ": is the same plan as " + other.file +
                          "; give it once");
@@ -313,13 +174,13 @@ class Progress {
 
 std::string log_file_of(const CommandLine& line) {
   if (!line.runs.empty() || line.json.empty()) return line.runs;
-  return std::filesystem::path(line.json).replace_extension(".jsonl").string();
+  return fs::path(line.json).replace_extension(".jsonl").string();
 }
 
 void make_runs(const CommandLine& line, const Cell& cell, sim::Evaluation& evaluation) {
-  std::vector<Prepared> prepared;
+  std::vector<PlanRunner> runners;
   for (const sim::Candidate& candidate : evaluation.candidates) {
-    prepared.push_back(prepare(cell, candidate));
+    runners.emplace_back(cell, evaluation.task, candidate);
   }
 
   sim::RunMaker::Parameters parameters;
@@ -337,13 +198,10 @@ void make_runs(const CommandLine& line, const Cell& cell, sim::Evaluation& evalu
   if (found > 0) std::printf("%zu of %zu runs are there already\n", found, maker.all());
 
   Progress progress(maker.all(), found);
-  maker.make(
-      [&](std::size_t plan, const sim::Trial& trial) {
-        return execute(cell, evaluation, plan, prepared[plan], trial);
-      },
-      [&](const sim::Run& run) {
-        progress.count(classify(run.result) == sim::TrialClass::kSucceeded);
-      });
+  maker.make([&](std::size_t plan, const sim::Trial& trial) { return runners[plan].run(trial); },
+             [&](const sim::Run& run) {
+               progress.count(classify(run.result) == sim::TrialClass::kSucceeded);
+             });
 }
 
 /// One run of each plan, told step by step.
@@ -356,10 +214,7 @@ int replay(const CommandLine& line, const Cell& cell, const sim::Evaluation& eva
         candidate.file.c_str(), trial.number, trial.distance,
         static_cast<unsigned long long>(trial.seed));
     const sim::TrialResult result =
-        execute(cell, evaluation, plan, prepare(cell, candidate), trial, [&](const Chain& chain) {
-          chain.print();
-          if (!line.black_box.empty()) chain.black_box().write_csv(line.black_box);
-        });
+        PlanRunner(cell, evaluation.task, candidate).tell(trial, line.black_box);
     std::printf(
         "%s\n%s\n", to_string(classify(result)),
         sim::run_line(candidate.hash, {trial, result}, evaluation.ranges.has_value()).c_str());
@@ -367,13 +222,27 @@ int replay(const CommandLine& line, const Cell& cell, const sim::Evaluation& eva
   return 0;
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
+  check_writable(folder / "x.svg");
+}
+
+void write_figures(const fs::path& folder, const sim::Evaluation& evaluation) {
+  for (const sim::FigureFile& file : sim::figure_files(evaluation)) {
+    write_file(folder / file.name, file.svg);
+  }
+}
+
 int evaluate(const CommandLine& line) {
   if (!line.black_box.empty() && line.plans.size() != 1) {
     throw InputError("--black-box " + line.black_box + ": holds one run; give one --plan");
   }
-  for (const std::string& file : {line.json, line.report, line.black_box}) {
+  for (const std::string& file : {line.json, line.report, line.summary, line.black_box}) {
     if (!file.empty()) check_writable(file);
   }
+  if (!line.figures.empty()) make_folder(line.figures);
   const Cell cell = load_cell(line.cell);
   hw::check_bus_load(cell.robot);
   hw::check_response_times(cell.robot);
@@ -383,6 +252,8 @@ int evaluate(const CommandLine& line) {
   make_runs(line, cell, evaluation);
   if (!line.json.empty()) write_file(line.json, sim::evaluation_json(evaluation));
   if (!line.report.empty()) write_file(line.report, sim::evaluation_html(evaluation));
+  if (!line.summary.empty()) write_file(line.summary, sim::summary_json(evaluation));
+  if (!line.figures.empty()) write_figures(line.figures, evaluation);
   std::fputs(sim::describe(evaluation).c_str(), stdout);
   return 0;
 }
@@ -393,8 +264,7 @@ int parse_and_evaluate(int argc, char** argv) {
   CommandLine line;
   CLI::App app{
       "How plans fare in many drawn worlds: each run goes through the executor and the CAN "
-      "protocol "
-      "to the virtual arm, in virtual time.",
+      "protocol to the virtual arm, in virtual time.",
       "tenon-evaluate"};
   app.footer(
       "Example:\n  tenon-evaluate --cell hw/cells/gantry3.yaml --task "
@@ -428,6 +298,9 @@ int parse_and_evaluate(int argc, char** argv) {
       app.add_option("--merge", line.merge, "run logs of shards; what they lack is made");
   app.add_option("--json", line.json, "file for results and all runs");
   app.add_option("--report", line.report, "file for an HTML page with the plots");
+  app.add_option("--summary", line.summary,
+                 "file for the results without the single runs, as JSON");
+  app.add_option("--figures", line.figures, "folder for the page's plots, each an SVG file");
   CLI::Option* only =
       app.add_option("--only", line.only, "make one run again by its number, and tell it in full")
           ->excludes(shard)

@@ -20,11 +20,9 @@ constexpr const char* kStyle =
     "svg{display:inline-block;vertical-align:-3px;"
     "margin-right:8px}code{font-size:12px;color:#444}"
     ".row{display:flex;flex-wrap:wrap;gap:18px 22px;align-items:flex-start}"
-    "figure{margin:0 0 14px}figcaption{font-size:13px;color:#555;max-width:640px;margin:2px 0 0 "
-    "58px}"
-    ".narrow figcaption{max-width:330px}svg{display:block}"
-    "svg text{font:12px system-ui,sans-serif}svg .label{font-size:13px;fill:#444}"
-    ".ground{fill:#fff}.frame{fill:none;stroke:#999}.tick{stroke:#999}"
+    "figure{margin:0 0 14px}figcaption{font-size:13px;color:#555;max-width:580px;margin:2px 0 0 "
+    "74px}"
+    ".narrow figcaption{max-width:320px}svg{display:block}"
     ".key{display:inline-block;margin-right:18px}.key svg{display:inline-block;"
     "vertical-align:-3px;margin-right:5px}";
 
@@ -70,7 +68,7 @@ class Page {
   [[nodiscard]] std::string html() const {
     const std::string title = escaped(task_.name);
     std::string page = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>" +
-                       title + ": evaluation</title>\n<style>" + kStyle +
+                       title + ": evaluation</title>\n<style>" + kStyle + kFigureStyle +
                        "</style></head>\n<body>\n<h1>" + title + "</h1>\n" + opening() + legend();
     page += plans_table() + errors_table();
     for (std::size_t i = 0; i < summaries_.size(); ++i) page += section(i);
@@ -97,7 +95,8 @@ class Page {
         "<table class='nowrap'><tr><th>Plan</th><th>Method</th><th class='num'>Steps</th>"
         "<th>Succeeded</th>";
     for (const RateWithin& within : summaries_.front().within) {
-      html += format("<th>Draws within %g&sigma;</th>", within.distance);
+      html += format("<th>Within %g&sigma; (%.2f %% of draws)</th>", within.distance,
+                     1e2 * within.mass);
     }
     html += "<th class='num'>Stopped</th><th class='num'>Done but wrong</th></tr>\n";
     for (std::size_t i = 0; i < summaries_.size(); ++i) {
@@ -122,6 +121,7 @@ class Page {
         "<table class='nowrap'><tr><th>Runs that were done</th><th>Axis</th>"
         "<th class='num'>Initial deviation</th><th class='num'>Final deviation</th>"
         "<th class='num'>Ratio</th><th class='num'>Final mean</th>"
+        "<th class='num'>Distance, mean / max</th>"
         "<th class='num'>Largest force, p50 / p99 / max</th>"
         "<th class='num'>Time, p50</th></tr>\n";
     for (std::size_t i = 0; i < summaries_.size(); ++i) {
@@ -138,6 +138,9 @@ class Page {
                 number_cell(ratio_text(error)) +
                 number_cell(format("%+.3f %s", unit * error.final.mean, name));
         const Quantiles& force = summary.contact_force_N;
+        html += number_cell(first ? format("%.2f / %.2f mm", 1e3 * summary.error_norm_m.mean,
+                                           1e3 * summary.error_norms_m.max)
+                                  : "");
         html += number_cell(first ? format("%.1f / %.1f / %.1f N", force.p50, force.p99, force.max)
                                   : "") +
                 number_cell(first ? format("%.1f s", summary.duration_s.p50) : "") + "</tr>\n";
@@ -189,10 +192,34 @@ class Page {
     return html + "</div>\n</div>\n";
   }
 
+  [[nodiscard]] static std::string class_cell(const TrialResult& result) {
+    return std::string("<td style='color:") + colour_of(classify(result)) + "'>" +
+           (classify(result) == TrialClass::kStopped ? "stopped" : "done but wrong") + "</td>";
+  }
+
+  [[nodiscard]] static std::string step_cells(const TrialResult& result) {
+    return number_cell(result.step < 0 ? "" : std::to_string(result.step)) + "<td>" +
+           escaped(result.outcome) + "</td>";
+  }
+
+  [[nodiscard]] static std::string kinds_table(const Candidate& candidate) {
+    std::string html =
+        "<table><tr><th class='num'>Failed runs</th><th></th><th class='num'>Last step</th>"
+        "<th>Its outcome</th><th>Ending</th><th>Why, in the first of them</th></tr>\n";
+    for (const FailureKind& kind : kinds_of_failure(candidate)) {
+      const TrialResult& result = kind.first->result;
+      html += "<tr>" + number_cell(std::to_string(kind.count)) + class_cell(result) +
+              step_cells(result) + "<td>" + escaped(result.ending) + "</td><td>" +
+              escaped(result.reason) + "</td></tr>\n";
+    }
+    return html + "</table>\n";
+  }
+
   [[nodiscard]] std::string failures_table(const Candidate& candidate) const {
     const std::vector<const Run*> failed = failures(candidate);
     if (failed.empty()) return "<p><b>No run failed.</b></p>\n";
-    std::string html = "<details" + std::string(failed.size() <= 20 ? " open" : "") + "><summary>" +
+    std::string html = kinds_table(candidate) + "<details" +
+                       std::string(failed.size() <= 20 ? " open" : "") + "><summary>" +
                        std::to_string(failed.size()) + (failed.size() == 1 ? " run" : " runs") +
                        " that failed</summary>\n<table><tr><th class='num'>Run</th>"
                        "<th class='num'>&sigma;</th><th></th><th class='num'>Step</th>"
@@ -200,11 +227,8 @@ class Page {
     for (const Run* run : failed) {
       const TrialResult& result = run->result;
       html += "<tr>" + number_cell(std::to_string(run->trial.number)) +
-              number_cell(format("%.2f", run->trial.distance)) +
-              "<td style='color:" + colour_of(classify(result)) + "'>" +
-              (classify(result) == TrialClass::kStopped ? "stopped" : "wrong") + "</td>" +
-              number_cell(result.step < 0 ? "" : std::to_string(result.step)) + "<td>" +
-              escaped(result.outcome) + "</td><td>" + escaped(result.reason) + "<br><code>" +
+              number_cell(format("%.2f", run->trial.distance)) + class_cell(result) +
+              step_cells(result) + "<td>" + escaped(result.reason) + "<br><code>" +
               escaped(replay_command(evaluation_, candidate, run->trial.number)) +
               "</code></td></tr>\n";
     }

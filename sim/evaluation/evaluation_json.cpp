@@ -75,7 +75,22 @@ Json json_of(const std::vector<Bins>& by, const Candidate& candidate) {
   return cells;
 }
 
-Json json_of(const Evaluation& evaluation, const Candidate& candidate) {
+Json failures_json(const Candidate& candidate) {
+  Json kinds = Json::array();
+  for (const FailureKind& kind : kinds_of_failure(candidate)) {
+    const TrialResult& result = kind.first->result;
+    kinds.push_back({{"class", to_string(classify(result))},
+                     {"ending", result.ending},
+                     {"step", result.step},
+                     {"outcome", result.outcome},
+                     {"runs", kind.count},
+                     {"first_run", kind.first->trial.number},
+                     {"first_reason", result.reason}});
+  }
+  return kinds;
+}
+
+Json json_of(const Evaluation& evaluation, const Candidate& candidate, bool with_runs) {
   const Plan& plan = candidate.plan;
   Json json = {{"file", candidate.file},
                {"hash", candidate.hash},
@@ -85,7 +100,9 @@ Json json_of(const Evaluation& evaluation, const Candidate& candidate) {
                {"check_envelopes", plan.check_envelopes},
                {"made_for_this_task", plan.task_hash == evaluation.task.hash}};
   json["summary"] = json_of(summarise(evaluation.task, candidate));
+  json["failures"] = failures_json(candidate);
   if (!evaluation.by.empty()) json["by"] = json_of(evaluation.by, candidate);
+  if (!with_runs) return json;
   json["runs"] = Json::array();
   for (const auto& [number, run] : candidate.runs) {
     Json line = Json::parse(run_line(candidate.hash, run, evaluation.ranges.has_value()));
@@ -95,9 +112,7 @@ Json json_of(const Evaluation& evaluation, const Candidate& candidate) {
   return json;
 }
 
-}  // namespace
-
-std::string evaluation_json(const Evaluation& evaluation) {
+std::string text_of(const Evaluation& evaluation, bool with_runs) {
   Json json = {{"task", evaluation.task.name},
                {"cell", evaluation.cell},
                {"experiment", evaluation.ranges ? Json(evaluation.ranges->name) : Json()},
@@ -106,9 +121,15 @@ std::string evaluation_json(const Evaluation& evaluation) {
                {"particle_sigmas", evaluation.task.particle_sigmas}};
   json["plans"] = Json::array();
   for (const Candidate& candidate : evaluation.candidates) {
-    json["plans"].push_back(json_of(evaluation, candidate));
+    json["plans"].push_back(json_of(evaluation, candidate, with_runs));
   }
   return json.dump(1) + "\n";
 }
+
+}  // namespace
+
+std::string evaluation_json(const Evaluation& evaluation) { return text_of(evaluation, true); }
+
+std::string summary_json(const Evaluation& evaluation) { return text_of(evaluation, false); }
 
 }  // namespace tenon::sim

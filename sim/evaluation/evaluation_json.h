@@ -9,5 +9,7 @@ namespace tenon::sim {
 
 /// Depends on the runs alone, and not on how they were made: equal runs, equal bytes.
 [[nodiscard]] std::string evaluation_json(const Evaluation& evaluation);
+/// The same without the single runs.
+[[nodiscard]] std::string summary_json(const Evaluation& evaluation);
 
 }  // namespace tenon::sim

@@ -68,11 +68,13 @@ void mark(Plot& plot, const Candidate& candidate, double size_px, const At& at) 
   }
   plot.dots(succeeded, size_px, kSucceededColour);
   for (const TrialClass kind : {TrialClass::kStopped, TrialClass::kDoneButWrong}) {
+    std::vector<std::pair<Point, std::string>> failed;
     for (const auto& [number, run] : candidate.runs) {
       if (classify(run.result) != kind) continue;
       const std::optional<Point> place = at(run);
-      if (place) plot.cross(*place, 1.6 * size_px, colour_of(kind), title_of(run));
+      if (place) failed.emplace_back(*place, title_of(run));
     }
+    plot.crosses(failed, 1.6 * size_px, colour_of(kind));
   }
 }
 

@@ -15,6 +15,11 @@ inline constexpr const char* kStoppedColour = "#e08214";
 inline constexpr const char* kWrongColour = "#b2182b";
 [[nodiscard]] const char* colour_of(TrialClass trial_class);
 
+/// The style sheet of all of them.
+inline constexpr const char* kFigureStyle =
+    "svg text{font:12px system-ui,sans-serif}svg .label{font-size:13px;fill:#444}"
+    ".ground{fill:#fff}.frame{fill:none;stroke:#999}.tick{stroke:#999}";
+
 /// Where each run began and ended, seen from the environment as it really stood.
 [[nodiscard]] std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candidate,
                                          const View& view);

@@ -8,7 +8,7 @@
 namespace tenon::sim {
 namespace {
 
-constexpr double kLeft_px = 58.0;
+constexpr double kLeft_px = 74.0;
 constexpr double kRight_px = 20.0;
 constexpr double kTop_px = 10.0;
 constexpr double kBottom_px = 42.0;
@@ -118,12 +118,17 @@ void Plot::circle(const Point& centre, const Point& reach, std::string_view styl
       std::string(style) + "/>\n";
 }
 
-void Plot::cross(const Point& at, double size_px, std::string_view colour, std::string_view title) {
-  const Point p = px(at);
-  const double half = 0.5 * size_px;
-  marks_ += format("<path d='M%.1f %.1fl%.1f %.1fm0 %.1fl%.1f %.1f' stroke-width='2' stroke='",
-                   p.x() - half, p.y() - half, size_px, size_px, -size_px, -size_px, size_px) +
-            std::string(colour) + "'><title>" + escaped(title) + "</title></path>\n";
+void Plot::crosses(const std::vector<std::pair<Point, std::string>>& at, double size_px,
+                   std::string_view colour) {
+  if (at.empty()) return;
+  marks_ += "<g stroke-width='2' stroke='" + std::string(colour) + "'>\n";
+  for (const auto& [point, title] : at) {
+    const Point p = px(point) - Point::Constant(0.5 * size_px);
+    marks_ += format("<path d='M%.1f %.1fl%.1f %.1fm0 %.1fl%.1f %.1f'>", p.x(), p.y(), size_px,
+                     size_px, -size_px, -size_px, size_px) +
+              "<title>" + escaped(title) + "</title></path>\n";
+  }
+  marks_ += "</g>\n";
 }
 
 void Plot::rectangle(const Point& low, const Point& high, std::string_view style,

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tenon::sim {
@@ -39,8 +40,9 @@ class Plot {
   void dots(const std::vector<Point>& at, double diameter_px, std::string_view colour);
   /// Reaches in units: an ellipse where the axes' scales differ.
   void circle(const Point& centre, const Point& reach, std::string_view style);
-  /// With what a pointer over it shows.
-  void cross(const Point& at, double size_px, std::string_view colour, std::string_view title);
+  /// Each with what a pointer over it shows.
+  void crosses(const std::vector<std::pair<Point, std::string>>& at, double size_px,
+               std::string_view colour);
   void rectangle(const Point& low, const Point& high, std::string_view style,
                  std::string_view title = {});
   void text(const Point& at, std::string_view text, std::string_view style);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "shared/base/text.h"
 
@@ -39,6 +41,8 @@ std::string describe(const Task& task, const Candidate& candidate) {
                    unit * error.final.deviation, error.axis < 3 ? "mm" : "deg") +
             ratio_text(error) + ")\n";
   }
+  text += format("  distance from the goal where done: mean %.3f, p99 %.3f, max %.3f mm\n",
+                 1e3 * s.error_norm_m.mean, 1e3 * s.error_norms_m.p99, 1e3 * s.error_norms_m.max);
   text +=
       format("  largest contact force: p50 %.1f, p95 %.1f, p99 %.1f, max %.1f N; %.1f s a run\n",
              s.contact_force_N.p50, s.contact_force_N.p95, s.contact_force_N.p99,
@@ -123,6 +127,28 @@ std::vector<const Run*> failures(const Candidate& candidate) {
     }
   }
   return failed;
+}
+
+std::vector<FailureKind> kinds_of_failure(const Candidate& candidate) {
+  std::vector<FailureKind> kinds;
+  const auto key = [](const Run& run) {
+    const TrialResult& result = run.result;
+    return std::tie(result.done, result.ending, result.step, result.outcome);
+  };
+  for (const Run* run : failures(candidate)) {
+    const auto alike = std::find_if(kinds.begin(), kinds.end(), [&](const FailureKind& kind) {
+      return key(*kind.first) == key(*run);
+    });
+    if (alike == kinds.end()) {
+      kinds.push_back({run, 1});
+    } else {
+      ++alike->count;
+    }
+  }
+  std::stable_sort(kinds.begin(), kinds.end(), [](const FailureKind& a, const FailureKind& b) {
+    return std::pair(a.first->result.done, a.count) > std::pair(b.first->result.done, b.count);
+  });
+  return kinds;
 }
 
 std::string replay_command(const Evaluation& evaluation, const Candidate& candidate,

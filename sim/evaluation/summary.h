@@ -72,6 +72,14 @@ struct Summary {
 /// Runs that did not succeed, done but wrong before stopped, then by number.
 [[nodiscard]] std::vector<const Run*> failures(const Candidate& candidate);
 
+/// Runs that failed alike.
+struct FailureKind {
+  const Run* first = nullptr;  ///< by number
+  std::size_t count = 0;
+};
+/// Alike in class, ending, step and outcome. Done but wrong before stopped, then the most frequent.
+[[nodiscard]] std::vector<FailureKind> kinds_of_failure(const Candidate& candidate);
+
 /// The shell command that makes a run again.
 [[nodiscard]] std::string replay_command(const Evaluation& evaluation, const Candidate& candidate,
                                          std::size_t number);

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ constexpr int kRuns = 8;
 class Evaluate : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder = new test::ScratchFolder;
+    folder = new ScratchFolder;
     plan_file = plan_by_command(*folder, "1");
     experiment_file = folder->put("harsh.yaml", kHarshWorld);
     const Ended whole = run(*folder, command({"--json", path("whole.json")}));
@@ -61,7 +62,7 @@ class Evaluate : public testing::Test {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   }
 
-  inline static test::ScratchFolder* folder = nullptr;
+  inline static ScratchFolder* folder = nullptr;
   inline static std::string plan_file;
   inline static std::string experiment_file;
 };
@@ -131,12 +132,58 @@ TEST_F(Evaluate, AFailedRunMadeAgainGivesTheSameLine) {
   FAIL() << "no run failed";
 }
 
+TEST_F(Evaluate, TheSummaryIsTheResultWithoutItsRuns) {
+  const Ended ended = run(*folder, command({"--runs", path("whole.jsonl"), "--summary",
+                                            path("summary.json"), "--figures", path("figures")}));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  auto whole = nlohmann::ordered_json::parse(folder->get("whole.json"));
+  whole["plans"][0].erase("runs");
+  EXPECT_EQ(folder->get("summary.json"), whole.dump(1) + "\n");
+  for (const std::string figure : {"runs", "draws", "ends", "errors"}) {
+    EXPECT_EQ(folder->get("figures/start_1_" + figure + ".svg").rfind("<svg xmlns=", 0), 0U);
+  }
+}
+
+TEST_F(Evaluate, TheBlackBoxHoldsEveryCycleOfTheRunThatIsTold) {
+  const Ended ended = run(*folder, command({"--only", "0", "--black-box", path("run.csv")}));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  std::istringstream csv(folder->get("run.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line.rfind("sequence,time_ns,", 0), 0U) << line;
+  long long cycles = 0;
+  while (std::getline(csv, line)) ASSERT_EQ(std::stoll(line), cycles++) << line;
+  // The run takes seconds, at 500 Hz.
+  EXPECT_GT(cycles, 1000);
+}
+
+TEST_F(Evaluate, BadUsageOfTheBlackBoxIsOneLineAndExitsTwo) {
+  const std::string csv = path("bad.csv");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> bad = {
+      {{"--black-box", csv}, "--only"},
+      {{"--only", "0", "--black-box", csv, "--plan", plan_file}, "give one --plan"},
+      {{"--only", "0", "--black-box", path("none/run.csv")}, "none/run.csv"},
+  };
+  for (const auto& [more, named] : bad) {
+    const Ended ended = run(*folder, command(more));
+    EXPECT_EQ(ended.status, 2) << named;
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+    EXPECT_NE(ended.err.find(named), std::string::npos) << ended.err;
+  }
+}
+
 TEST_F(Evaluate, BadUsageIsOneLineAndExitsTwo) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> bad = {
-      {{"--shard", "3/2"}, "--shard \"3/2\""}, {{"--shard", "0/2"}, "--shard \"0/2\""},
-      {{"--by", "colour=0:1:2"}, "colour"},    {{"--by", "friction=0.7:0.9:2"}, "no draw"},
-      {{"--plan", plan_file}, "give it once"}, {{"--merge", path("none.jsonl")}, "none.jsonl"},
-      {{"--merge", plan_file}, "start_1.tnp"}, {{"--json", path("none/out.json")}, "none/out.json"},
+      {{"--shard", "3/2"}, "--shard \"3/2\""},
+      {{"--shard", "0/2"}, "--shard \"0/2\""},
+      {{"--by", "colour=0:1:2"}, "colour"},
+      {{"--by", "friction=0.7:0.9:2"}, "no draw"},
+      {{"--plan", plan_file}, "give it once"},
+      {{"--merge", path("none.jsonl")}, "none.jsonl"},
+      {{"--merge", plan_file}, "start_1.tnp"},
+      {{"--json", path("none/out.json")}, "none/out.json"},
+      {{"--figures", plan_file}, "start_1.tnp"},
+      {{"--summary", path("none/out.json")}, "none/out.json"},
   };
   for (const auto& [more, named] : bad) {
     const Ended ended = run(*folder, command(more));

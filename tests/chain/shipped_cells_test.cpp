@@ -9,8 +9,10 @@
 
 #include "executor/dry_run/dry_run.h"
 #include "executor/plan_check.h"
+#include "shared/base/error.h"
 #include "shared/config/load.h"
 #include "sim/virtual_arm/environment_offset.h"
+#include "sim/virtual_arm/start_joints.h"
 #include "tests/chain/planned.h"
 #include "tests/support/lockstep.h"
 
@@ -42,6 +44,15 @@ TEST_P(ShippedCell, BringsTheBoxToItsGoalWhereverTheDemosSeedsPutTheTable) {
         << "seed " << seed << ": " << result.reason;
     EXPECT_LT(result.truth.error_norm_m, task.goal_tolerance_m) << "seed " << seed;
   }
+}
+
+TEST(ShippedPegCell, ReachesTheStartOfTheFinePegWhichTheTablesCellDoesNot) {
+  const std::filesystem::path tree = TENON_SOURCE_DIR;
+  const Task task = load_task(tree / "planner/tasks/peg_in_hole_2d_fine.yaml");
+  const Pose& start = task.starts.front().pose;
+  EXPECT_NO_THROW((void)sim::start_joints(load_cell(tree / "hw/cells/gantry3_peg.yaml"), start));
+  EXPECT_THROW((void)sim::start_joints(load_cell(tree / "hw/cells/gantry3.yaml"), start),
+               InputError);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tree, ShippedCell, ::testing::Values("gantry3", "csp6", "lwa4p"),

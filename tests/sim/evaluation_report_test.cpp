@@ -7,6 +7,7 @@
 
 #include "sim/evaluation/evaluation_html.h"
 #include "sim/evaluation/evaluation_json.h"
+#include "sim/evaluation/figure_files.h"
 #include "sim/evaluation/outline.h"
 #include "sim/evaluation/summary.h"
 #include "tests/sim/literal_cell.h"
@@ -111,6 +112,21 @@ TEST(EvaluationSummary, TheWorstFailuresComeFirstEachWithItsCommand) {
             std::string::npos);
 }
 
+TEST(EvaluationSummary, FailuresOfAKindAreCountedTogetherTheMostFrequentStopFirst) {
+  Evaluation evaluation = small_evaluation();
+  auto& runs = evaluation.candidates[0].runs;
+  runs.emplace(7, run_of(7, 0.0, 0.1, false, false));
+  runs.emplace(8, run_of(8, 0.0, 0.1, false, false));
+  runs.at(8).result.step = 1;  // elsewhere
+  const auto kinds = kinds_of_failure(evaluation.candidates[0]);
+  ASSERT_EQ(kinds.size(), 4U);
+  EXPECT_EQ(kinds[0].first->trial.number, 4U);  // done but wrong
+  EXPECT_EQ(kinds[1].first->trial.number, 5U);
+  EXPECT_EQ(kinds[1].count, 2U);  // 5 and 7
+  EXPECT_EQ(kinds[2].first->trial.number, 6U);
+  EXPECT_EQ(kinds[3].first->trial.number, 8U);
+}
+
 TEST(EvaluationJson, HoldsTheSummaryAndEveryRunInOrder) {
   const auto json = nlohmann::json::parse(evaluation_json(small_evaluation()));
   const auto& plan = json["plans"][0];
@@ -120,6 +136,17 @@ TEST(EvaluationJson, HoldsTheSummaryAndEveryRunInOrder) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(plan["runs"][i]["run"], i + 1);
   EXPECT_EQ(plan["runs"][3]["class"], "done_but_wrong");
   EXPECT_TRUE(plan["runs"][5]["error"].is_null());
+}
+
+TEST(EvaluationJson, TheSummaryAloneCountsFailuresAndHoldsNoRun) {
+  const auto json = nlohmann::json::parse(summary_json(small_evaluation()));
+  const auto& plan = json["plans"][0];
+  EXPECT_FALSE(plan.contains("runs"));
+  ASSERT_EQ(plan["failures"].size(), 3U);
+  EXPECT_EQ(plan["failures"][0]["class"], "done_but_wrong");
+  EXPECT_EQ(plan["failures"][0]["first_run"], 4);
+  EXPECT_EQ(plan["failures"][1]["ending"], "plan_failed");
+  EXPECT_EQ(plan["failures"][1]["runs"], 1);
 }
 
 std::size_t count_of(const std::string& text, const std::string& piece) {
@@ -140,10 +167,37 @@ TEST(EvaluationHtml, StandsAloneAndMarksEveryFailure) {
   EXPECT_NE(page.find("a &amp; b"), std::string::npos);
   EXPECT_EQ(page.find("<contact>"), std::string::npos);
   EXPECT_NE(page.find("--only 4</code>"), std::string::npos);
+  EXPECT_NE(page.find(".frame{fill:none"), std::string::npos);
+  EXPECT_NE(page.find("(98.89 % of draws)"), std::string::npos);
   // A cross in each of the three figures of places, with what happened.
   EXPECT_EQ(count_of(page, "<title>run 4, 2.50 sigma"), 3U);
   EXPECT_EQ(count_of(page, "<title>run 5, 3.50 sigma"), 3U);
   EXPECT_EQ(count_of(page, "<title>run 6"), 1U);  // it ended nowhere
+}
+
+TEST(EvaluationFigures, EachIsAnSvgDocumentOfItsOwn) {
+  Evaluation evaluation = small_evaluation();
+  evaluation.by = {parse_bins("friction=0.05:0.65:3")};
+  const auto files = figure_files(evaluation);
+  std::string names;
+  for (const FigureFile& file : files) names += file.name + " ";
+  EXPECT_EQ(names, "p_runs.svg p_draws.svg p_ends.svg p_errors.svg p_by.svg ");
+  for (const FigureFile& file : files) {
+    EXPECT_EQ(file.svg.rfind("<svg xmlns='http://www.w3.org/2000/svg' width=", 0), 0U);
+    EXPECT_EQ(count_of(file.svg, "<svg"), count_of(file.svg, "</svg>"));
+    EXPECT_EQ(count_of(file.svg, "<style>"), 1U);
+    EXPECT_EQ(file.svg.find("<title>"), std::string::npos);
+  }
+}
+
+TEST(EvaluationFigures, ATaskInSpaceHasThemFromTwoSides) {
+  Evaluation evaluation = small_evaluation();
+  evaluation.task.coordinates = 0b000111;
+  std::string names;
+  for (const FigureFile& file : figure_files(evaluation)) names += file.name + " ";
+  EXPECT_EQ(names,
+            "p_runs_xy.svg p_draws_xy.svg p_ends_xy.svg p_runs_xz.svg p_draws_xz.svg p_ends_xz.svg "
+            "p_errors.svg ");
 }
 
 TEST(EvaluationOutline, ABoxTurnedByAnEighthShowsItsDiagonal) {
