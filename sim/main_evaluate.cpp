@@ -13,6 +13,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -83,9 +84,9 @@ std::string identity_of(const CommandLine& line, const Task& task) {
 }
 
 std::string replay_of(const CommandLine& line) {
-  std::string text = "tenon-evaluate --cell " + line.cell + " --task '" + line.task + "' --seed " +
-                     std::to_string(line.seed);
-  if (!line.experiment.empty()) text += " --experiment " + line.experiment;
+  std::string text = "tenon-evaluate --cell " + shell_word(line.cell) + " --task " +
+                     shell_word(line.task) + " --seed " + std::to_string(line.seed);
+  if (!line.experiment.empty()) text += " --experiment " + shell_word(line.experiment);
   return text;
 }
 
@@ -235,9 +236,29 @@ void write_figures(const fs::path& folder, const sim::Evaluation& evaluation) {
   }
 }
 
+/// What is written, and every log that is read, must be a file of its own.
+void check_apart(const CommandLine& line) {
+  std::vector<std::string> files = line.merge;
+  for (const std::string& file :
+       {log_file_of(line), line.json, line.report, line.summary, line.black_box}) {
+    if (!file.empty()) files.push_back(file);
+  }
+  std::set<fs::path> known;
+  for (const std::string& file : files) {
+    if (known.insert(fs::weakly_canonical(fs::absolute(file))).second) continue;
+    throw InputError(file + ": is given for two files, or is the run log of --json; give each a " +
+                     "name of its own");
+  }
+}
+
 int evaluate(const CommandLine& line) {
+  check_apart(line);
   if (!line.black_box.empty() && line.plans.size() != 1) {
     throw InputError("--black-box " + line.black_box + ": holds one run; give one --plan");
+  }
+  if (line.only && !(line.json + line.report + line.summary + line.figures).empty()) {
+    throw InputError(
+        "--only: tells one run here; leave out --json, --report, --summary and --figures");
   }
   for (const std::string& file : {line.json, line.report, line.summary, line.black_box}) {
     if (!file.empty()) check_writable(file);
@@ -303,6 +324,7 @@ int parse_and_evaluate(int argc, char** argv) {
   app.add_option("--figures", line.figures, "folder for the page's plots, each an SVG file");
   CLI::Option* only =
       app.add_option("--only", line.only, "make one run again by its number, and tell it in full")
+          ->check(CLI::Range(0, 10'000'000))
           ->excludes(shard)
           ->excludes(merge);
   app.add_option("--black-box", line.black_box,

@@ -88,6 +88,11 @@ class Chain {
     }
     result.error = truth.error;
     result.contact_force_N_max = truth.contact_force_N_max;
+    if (result.done && !result.at_goal) {
+      result.reason += format("; the part is %.2f mm from its goal (%.2f allowed) and %sinserted",
+                              1e3 * truth.error_norm_m, 1e3 * truth.goal_tolerance_m,
+                              inserted(task_, truth.tool) ? "" : "not ");
+    }
     if (truth.solver_messages > 0) {
       result.done = false;
       result.ending = sim::kNoPhysics;

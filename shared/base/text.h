@@ -1,9 +1,12 @@
 #pragma once
 // Text for messages. Allocates; not for real time.
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 namespace tenon {
 
@@ -39,6 +42,18 @@ inline constexpr std::array<const char*, 6> kAxisNames = {"x", "y", "z", "rx", "
     if ((axes >> axis & 1U) != 0) text += (text.empty() ? "" : " ") + std::string(axis_name(axis));
   }
   return text.empty() ? "none" : text;
+}
+
+/// As one word of a POSIX shell: quoted where it has to be.
+[[nodiscard]] inline std::string shell_word(const std::string& word) {
+  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./:=,+@%").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (plain) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 }  // namespace tenon

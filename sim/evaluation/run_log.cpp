@@ -67,6 +67,10 @@ RunLog::RunLog(const std::filesystem::path& file, const std::string& identity)
     const Lines lines = lines_of(text);
     if (!lines.whole.empty()) found_ = runs_of(file, lines, identity);
     was_torn_ = lines.bytes < text.size();
+    // A log that tore in its first line holds the beginning of that, and nothing else does.
+    if (lines.whole.empty() && !identity.starts_with(text)) {
+      fail(file, "is no run log; give another file or remove it");
+    }
     if (was_torn_ && ::ftruncate(descriptor_, static_cast<off_t>(lines.bytes)) != 0) {
       fail(file, std::string("cannot be cut: ") + std::strerror(errno));
     }

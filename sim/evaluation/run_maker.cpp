@@ -11,7 +11,8 @@ namespace tenon::sim {
 Shard parse_shard(const std::string& text) {
   Shard shard;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%zu/%zu%c", &shard.index, &shard.count, &rest) != 2 ||
+  if (text.find('-') != std::string::npos ||
+      std::sscanf(text.c_str(), "%zu/%zu%c", &shard.index, &shard.count, &rest) != 2 ||
       shard.index < 1 || shard.index > shard.count) {
     throw InputError("--shard \"" + text + "\": must be I/N with 1 <= I <= N, such as 1/8");
   }

@@ -153,7 +153,8 @@ std::vector<FailureKind> kinds_of_failure(const Candidate& candidate) {
 
 std::string replay_command(const Evaluation& evaluation, const Candidate& candidate,
                            std::size_t number) {
-  return evaluation.replay + " --plan " + candidate.file + " --only " + std::to_string(number);
+  return evaluation.replay + " --plan " + shell_word(candidate.file) + " --only " +
+         std::to_string(number);
 }
 
 std::string describe(const Evaluation& evaluation) {

@@ -5,7 +5,7 @@
 #
 #   sim/experiments/run.sh all --results sim/experiments/results
 #
-# and comes out the same to the byte. Stopped and started again, it goes on where it was.
+# Stopped and started again, it goes on where it was; the same sources give the same bytes.
 #
 #   sim/experiments/run.sh NAME... [-n RUNS] [--threads N] [--bin FOLDER] [--output FOLDER]
 #                          [--results FOLDER]
@@ -23,8 +23,9 @@
 # Seeds and ranges stand here and in the files beside it, chosen before results were looked at, but for two
 # that were changed after a first look at 60 runs and less: the start of fig11 (6 became 7, for which planning
 # takes less time), and the range of the sensor noise (24 times became 6: taring refuses above 0.3 N).
-# Before their first run the tilt was narrowed and sweep_clearance_tight.yaml added; the number of runs of a sweep
-# is what there was time for.
+# Before their first run the tilt was narrowed, and sweep_clearance_tight.yaml, the peg at 0.5 mm and the peg's cell
+# were added; the number of runs of a sweep is what there was time for. The bins of --by were chosen to show
+# what had come out.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 

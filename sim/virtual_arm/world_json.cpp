@@ -28,8 +28,11 @@ Json by_axis(const Vector6& value) {
 
 Json world_json(const WorldDraw& world) {
   Json json;
-  json["friction"] = world.friction.value_or(0.0);
-  json["contact_stiffness_Npm"] = world.contact_stiffness_Npm.value_or(0.0);
+  const auto where_drawn = [](const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
+  };
+  json["friction"] = where_drawn(world.friction);
+  json["contact_stiffness_Npm"] = where_drawn(world.contact_stiffness_Npm);
   json["clearance_m"] = world.clearance_m;
   json["held_size_error_m"] = list(world.held_size_error_m);
   json["environment_size_error_m"] = list(world.environment_size_error_m);

@@ -184,6 +184,10 @@ TEST_F(Evaluate, BadUsageIsOneLineAndExitsTwo) {
       {{"--json", path("none/out.json")}, "none/out.json"},
       {{"--figures", plan_file}, "start_1.tnp"},
       {{"--summary", path("none/out.json")}, "none/out.json"},
+      {{"--json", path("out.jsonl")}, "out.jsonl"},
+      {{"--json", path("one.json"), "--summary", path("./one.json")}, "one.json"},
+      {{"--only", "-1"}, "--only"},
+      {{"--only", "0", "--json", path("out.json")}, "--only"},
   };
   for (const auto& [more, named] : bad) {
     const Ended ended = run(*folder, command(more));

@@ -11,11 +11,19 @@
 #include "shared/base/bytes.h"
 #include "shared/base/crc32c.h"
 #include "shared/base/spsc_ring.h"
+#include "shared/base/text.h"
 
 namespace tenon {
 namespace {
 
 std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
+
+TEST(Text, AShellReadsAWordAsItWas) {
+  EXPECT_EQ(shell_word("hw/cells/gantry3.yaml"), "hw/cells/gantry3.yaml");
+  EXPECT_EQ(shell_word("task.yaml#tight"), "'task.yaml#tight'");
+  EXPECT_EQ(shell_word("my plans/it's.tnp"), "'my plans/it'\\''s.tnp'");
+  EXPECT_EQ(shell_word(""), "''");
+}
 
 // The definition, bit by bit.
 std::uint32_t bitwise_crc32c(const std::vector<std::uint8_t>& bytes) {

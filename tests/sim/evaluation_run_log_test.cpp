@@ -108,6 +108,14 @@ TEST(EvaluationRunLog, AnothersRunsAreRefusedAndLeftAlone) {
   EXPECT_EQ(folder.get("runs.jsonl"), "{\"seed\":2}\none\n");
 }
 
+TEST(EvaluationRunLog, ANoteWithoutALineEndIsNoTornLogAndLeftAlone) {
+  const tests::ScratchFolder folder;
+  const auto file = folder.put("runs.jsonl", "buy milk");
+  const std::string line = tests::refusal([&] { const RunLog log(file, kIdentity); });
+  EXPECT_NE(line.find("is no run log"), std::string::npos) << line;
+  EXPECT_EQ(folder.get("runs.jsonl"), "buy milk");
+}
+
 TEST(EvaluationRunLog, HasOneWriter) {
   const tests::ScratchFolder folder;
   const auto file = folder.path() / "runs.jsonl";

@@ -155,7 +155,7 @@ TEST(EvaluationRunMaker, AShardIsOneOfN) {
   EXPECT_EQ(parse_shard("1/1").count, 1U);
   EXPECT_EQ(parse_shard("3/8").index, 2U);
   EXPECT_EQ(parse_shard("8/8").index, 7U);
-  for (const char* text : {"", "1", "0/2", "3/2", "1/0", "a/b", "1/2x", "1/2/3"}) {
+  for (const char* text : {"", "1", "0/2", "3/2", "1/0", "a/b", "1/2x", "1/2/3", "-1/-1"}) {
     EXPECT_THROW(static_cast<void>(parse_shard(text)), InputError) << text;
   }
 }
