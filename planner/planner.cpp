@@ -159,16 +159,16 @@ class Planning {
     std::vector<double> distances_m =
         slow_from(slow, good_chains(at_contact_speed, {}), task_.particle_sigmas);
     for (int attempt = 0; attempt < kSpeedAttempts && any_fast(distances_m); ++attempt) {
-      if (!try_speeds(with_slow_from(slow, distances_m), distances_m)) return std::nullopt;
+      const Plan fast = with_slow_from(slow, distances_m);
+      if (!try_speeds(fast, certified(fast), distances_m)) return std::nullopt;
     }
-    const std::vector<double> none(distances_m.size(), 0.0);
-    return try_speeds(with_slow_from(slow, none), distances_m);
+    return try_speeds(slow, std::move(at_contact_speed), distances_m);
   }
 
   /// Completes the plan where it holds at its speeds; otherwise lowers the distances, to be tried
   /// next. At contact speed throughout there is nothing to lower.
-  std::optional<Refutation> try_speeds(const Plan& plan, std::vector<double>& distances_m) {
-    Certification certification = certified(plan);
+  std::optional<Refutation> try_speeds(const Plan& plan, Certification certification,
+                                       std::vector<double>& distances_m) {
     if (!certification.holds()) {
       distances_m.assign(distances_m.size(), 0.0);
       return refutation_of(certification);

@@ -140,6 +140,30 @@ TEST(Planner, CertificationRefusesAPlanThatSaysAnotherGoalOrTolerance) {
   EXPECT_THROW((void)certify(encode_plan(plan), task, pool), InputError);
 }
 
+TEST(Planner, CertificationRefusesAPlanWithLimitsOrSpeedsThatItsTaskHasNot) {
+  const Task task = room_task();
+  const PlanReport report = planned(task);
+  ASSERT_TRUE(report.plan.has_value());
+  RolloutPool pool(WallRollout(room()), 1);
+  Plan plan = *report.plan;
+  plan.torque_limit_Nm *= 50.0;
+  EXPECT_THROW((void)certify(encode_plan(plan), task, pool), InputError);
+  plan = *report.plan;
+  plan.parameter_sets.front().speeds.approach_mps *= 3.0;
+  EXPECT_THROW((void)certify(encode_plan(plan), task, pool), InputError);
+}
+
+TEST(Planner, IsJudgedByDrawsThatItsSearchHasNotSeen) {
+  const Task task = room_task();
+  const PlanReport report = planned(task);
+  ASSERT_TRUE(report.plan.has_value());
+  RolloutPool pool(WallRollout(room()), 1);
+  const Validation seen = validate(*report.plan, task, task.starts.front(), {}, pool);
+  for (const Draw& judging : report.validation.draws) {
+    for (const Draw& draw : seen.draws) EXPECT_FALSE(judging.chain.start == draw.chain.start);
+  }
+}
+
 TEST(Planner, PhysicsThatChangesAtHalfTheStepIsRefutedAndSearchedAround) {
   const Task task = room_task();
   WallRollout::World world = room();

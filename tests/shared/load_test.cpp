@@ -103,6 +103,11 @@ TEST(LoadTask, ReadsEveryValue) {
   EXPECT_EQ(task.friction.high, 0.6);
   EXPECT_EQ(task.oversize_m, 2.5e-4);
   EXPECT_EQ(task.rollout_step_us, 2000);
+
+  // A fast tool gets a step in which it goes no further than 0.5 mm.
+  const std::string fast = replaced(replaced(kTask, "  rollout_step_s: 0.002\n", ""),
+                                    "approach_mps: 0.1", "approach_mps: 1.0");
+  EXPECT_EQ(load_task(folder.put("fast.yaml", fast)).rollout_step_us, 500);
 }
 
 TEST(LoadTask, HashIsThatOfTheBytes) {
