@@ -32,10 +32,15 @@ while (($#)); do
 done
 
 .ci/setup.sh build
-if ! build_log=$( (cmake --preset release && cmake --build --preset release) 2>&1); then
+echo "== Build: minutes the first time"
+if [[ -t 1 ]]; then
+  cmake --preset release >/dev/null
+  cmake --build --preset release  # its progress is one line on a terminal
+elif ! build_log=$( (cmake --preset release && cmake --build --preset release) 2>&1); then
   printf '%s\n' "$build_log" >&2
   exit 1
 fi
+echo
 bin=build/release/bin
 task_file=planner/tasks/$task.yaml cell_file=hw/cells/$cell.yaml
 mkdir -p "$output"
