@@ -47,7 +47,7 @@ mkdir -p "$output"
 rm -f "$output"/{plan.tnp,plan.html,truth.json,sim.out,run.lcmlog,run.candump,result.json,black-box.csv}
 
 echo "== Plan: $task from start $start, positions uncertain"
-"$bin/tenon-plan" "$task_file" --start "$start" --cell "$cell_file" -o "$output/plan.tnp"
+"$bin/tenon-plan" "$task_file" --start "$start" --cell "$cell_file" --threads "$(nproc)" -o "$output/plan.tnp"
 "$bin/tenon-inspect" "$output/plan.tnp" --task "$task_file" --report "$output/plan.html" >/dev/null
 
 echo
