@@ -91,7 +91,7 @@ class GuideSearch {
     for (const Guide& guide : found_) {
       const ContactAttractor& contact = guide.contacts.front();
       auto& of_axis = known[static_cast<std::size_t>(contact.axis)];
-      if (!is_known(contact, of_axis)) of_axis.push_back(contact);
+      if (find_known(contact, of_axis) == of_axis.end()) of_axis.push_back(contact);
     }
     NormalDraws random(kSampleSeed);
     for (std::size_t i = 0; i < task_.attractor_samples; ++i) {
@@ -203,16 +203,19 @@ class GuideSearch {
       if (end.spread[axis] >= task_.attractor_ratio * from.spread[axis]) continue;
       auto& of_axis = known[static_cast<std::size_t>(axis)];
       const ContactAttractor contact{axis, end.mean, end.spread[axis], 0.0, from.mean};
-      if (of_axis.size() < kMaxContactsAnAxis && !is_known(contact, of_axis)) {
+      const auto same = find_known(contact, of_axis);
+      if (same != of_axis.end()) {
+        if (contact.spread < same->spread) *same = contact;
+      } else if (of_axis.size() < kMaxContactsAnAxis) {
         of_axis.push_back(contact);
       }
     }
   }
 
   /// The same face, met from where a step more or less makes no difference.
-  [[nodiscard]] bool is_known(const ContactAttractor& contact,
-                              const std::vector<ContactAttractor>& others) const {
-    return std::any_of(others.begin(), others.end(), [&](const ContactAttractor& other) {
+  [[nodiscard]] std::vector<ContactAttractor>::iterator find_known(
+      const ContactAttractor& contact, std::vector<ContactAttractor>& others) const {
+    return std::find_if(others.begin(), others.end(), [&](const ContactAttractor& other) {
       const Vector6 apart = displacement_between(contact.mean, other.mean);
       return std::abs(apart[contact.axis]) < 0.1 * task_.step_m &&
              (!other.via || apart.head<3>().norm() < task_.step_m);
@@ -226,7 +229,8 @@ class GuideSearch {
     for (int axis = 0; axis < 6; ++axis) {
       if (seed_.spread[axis] <= 0.0 || contains(before, axis)) continue;
       for (ContactAttractor contact : known[static_cast<std::size_t>(axis)]) {
-        contact.uncertainty_m2 = std::max(0.0, uncertainty_m2 - share_of(axis));
+        const double left_m2 = weight_of(axis) * contact.spread * contact.spread;
+        contact.uncertainty_m2 = std::max(0.0, uncertainty_m2 - share_of(axis)) + left_m2;
         std::vector<ContactAttractor> contacts = before;
         contacts.push_back(contact);
         combine(known, contact.uncertainty_m2, contacts);
@@ -243,8 +247,11 @@ class GuideSearch {
       const double off = displacement_between(seed_.mean, particle.pose)[axis];
       sum += off * off;
     }
-    const double weight = axis < 3 ? task_.position_weight : task_.orientation_weight;
-    return weight * sum / static_cast<double>(start_.particles.size());
+    return weight_of(axis) * sum / static_cast<double>(start_.particles.size());
+  }
+
+  [[nodiscard]] double weight_of(int axis) const {
+    return axis < 3 ? task_.position_weight : task_.orientation_weight;
   }
 
   /// Into a held contact or straight away from it.

@@ -8,6 +8,11 @@
 namespace tenon::planner {
 namespace {
 
+/// What a move costs beside its way.
+double move_cost(const Task& task, double uncertainty_m2) {
+  return task.move_weight + task.uncertainty_weight_per_m2 * uncertainty_m2;
+}
+
 double step_along(const Task& task, int axis) { return axis < 3 ? task.step_m : task.step_rad; }
 
 /// Steps along one axis; a contact takes at least one.
@@ -33,7 +38,7 @@ double cost_of_via(const ContactAttractor& contact, const Task& task, Pose& at,
   const Pose from = at;
   at = displaced(at, aside);
   return task.distance_weight_per_m * distance(from, at, metric_of(task)) +
-         task.uncertainty_weight_per_m2 * uncertainty_m2 * steps;
+         move_cost(task, uncertainty_m2) * steps;
 }
 
 double cost_of_contacts(const BeliefSummary& belief, const Guide& guide, const Task& task, Pose& at,
@@ -49,7 +54,7 @@ double cost_of_contacts(const BeliefSummary& belief, const Guide& guide, const T
     const Pose touching = displaced(at, along);
     const double steps = steps_along(task, axis, std::abs(along[axis]) + belief.spread[axis]);
     cost += task.distance_weight_per_m * distance(at, touching, metric_of(task)) +
-            task.uncertainty_weight_per_m2 * uncertainty_m2 * steps;
+            move_cost(task, uncertainty_m2) * steps;
     at = touching;
     uncertainty_m2 = std::min(uncertainty_m2, contact.uncertainty_m2);
   }
@@ -72,7 +77,7 @@ BeliefSummary summarise(const Belief& belief, const Task& task) {
 
 double edge_cost(const BeliefSummary& from, const BeliefSummary& to, const Task& task) {
   return task.distance_weight_per_m * distance(from.mean, to.mean, metric_of(task)) +
-         task.uncertainty_weight_per_m2 * from.uncertainty_m2;
+         move_cost(task, from.uncertainty_m2);
 }
 
 bool at_goal(const BeliefSummary& belief, const Task& task) {
@@ -85,7 +90,7 @@ double anchor_heuristic(const BeliefSummary& belief, const Task& task) {
   if (at_goal(belief, task)) return 0.0;
   const double away_m = distance(belief.mean, task.goal, metric_of(task)) - task.goal_tolerance_m;
   return task.distance_weight_per_m * std::max(0.0, away_m) +
-         task.uncertainty_weight_per_m2 * belief.uncertainty_m2;
+         move_cost(task, belief.uncertainty_m2);
 }
 
 double foliated_heuristic(const BeliefSummary& belief, const Guide& guide, const Task& task) {
@@ -95,7 +100,7 @@ double foliated_heuristic(const BeliefSummary& belief, const Guide& guide, const
   for (const Pose& next : guide.goals) {
     const double way_m = displacement_between(at, next).head<3>().lpNorm<1>();
     cost += task.distance_weight_per_m * distance(at, next, metric_of(task)) +
-            task.uncertainty_weight_per_m2 * uncertainty_m2 * std::max(1.0, way_m / task.step_m);
+            move_cost(task, uncertainty_m2) * std::max(1.0, way_m / task.step_m);
     at = next;
   }
   return cost;

@@ -42,19 +42,19 @@ struct Guide {
   double contact_scale = 1.0;
 };
 
-/// c(s, s') = w_d d(s, s') + w_u u(s).
+/// c(s, s') = w_d d(s, s') + w_u u(s) + w_m.
 [[nodiscard]] double edge_cost(const BeliefSummary& from, const BeliefSummary& to,
                                const Task& task);
 
 /// d(mean, goal) <= d_tol, u <= u_tol, and every particle by itself within d_tol and inserted.
 [[nodiscard]] bool at_goal(const BeliefSummary& belief, const Task& task);
 
-/// 0 at the goal, else w_d max(0, d(s, goal) - d_tol) + w_u u(s). Consistent: the term in u cancels
-/// against the edge's own, and the rest is a distance to a ball that holds every goal.
+/// 0 at the goal, else w_d max(0, d(s, goal) - d_tol) + w_u u(s) + w_m. Consistent: the last two
+/// terms cancel against the edge's own, and the rest is a distance to a ball that holds every goal.
 [[nodiscard]] double anchor_heuristic(const BeliefSummary& belief, const Task& task);
 
-/// What is left to pay by single steps along the guide: w_d for the way, and w_u u for every step
-/// at the uncertainty that the last contact left. A contact is behind a belief whose particles
+/// What is left to pay by single steps along the guide: w_d for the way, and w_m + w_u u for every
+/// step at the uncertainty that the last contact left. A contact is behind a belief whose particles
 /// stand together along its axis. Inadmissible.
 [[nodiscard]] double foliated_heuristic(const BeliefSummary& belief, const Guide& guide,
                                         const Task& task);

@@ -32,6 +32,7 @@ struct Arguments {
   std::size_t threads = 1;
   std::size_t draws = 200;
   std::optional<double> time_limit_s;
+  bool verbose = false;
 };
 
 void describe(CLI::App& app, Arguments& a) {
@@ -53,6 +54,7 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--draws", a.draws, "Random starts of the validation")
       ->check(CLI::Range(200, 100000))
       ->capture_default_str();
+  app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
   app.add_option("-o,--output", a.output, "Plan file to write")->required();
   app.add_option("--json", a.json, "File for the statistics, - for standard output");
 }
@@ -89,6 +91,9 @@ int run(const Arguments& a) {
   options.threads = a.threads;
   options.validation.draws = a.draws;
   options.assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
+  if (a.verbose) {
+    options.progress = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
+  }
   std::vector<std::string> adapted;
   if (!a.cell.empty()) {
     planner::CellFit fit = planner::fit_to_cell(task, load_cell(a.cell));

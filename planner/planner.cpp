@@ -17,6 +17,8 @@ namespace {
 
 // How often the approach distances of a path may be lowered before it runs at contact speed.
 constexpr int kSpeedAttempts = 2;
+// How often envelopes may be widened to more draws.
+constexpr std::uint64_t kEnvelopeBatches = 4;
 // A chain that stays this close to the search's particles has done as they did.
 constexpr double kForeseen_m = 1e-4;
 
@@ -75,12 +77,15 @@ class Planning {
                         [&] { return find_attractors(task_, belief_, long_succ_, pool_.front()); });
     if (is_baseline()) attractors_.guides.clear();
     report_.attractors = attractors_.guides.size();
+    tell(format("%zu guides, found with %llu moves", report_.attractors,
+                static_cast<unsigned long long>(long_succ_.counters().rollouts)));
     graph_.emplace(task_, belief_, attractors_, succ_);
     for (std::size_t round = 0; round < options_.rounds_max; ++round) {
       if (!search()) return report_with_counters();
       const std::optional<Refutation> refutation = try_path();
       if (!refutation) return report_with_counters();
       learn(*refutation);
+      tell("refuted: " + report_.refusals.back());
     }
     finish(PlanStatus::kNotCertified,
            format("every one of %zu paths was refuted, the last one: ", options_.rounds_max) +
@@ -89,6 +94,10 @@ class Planning {
   }
 
  private:
+  void tell(const std::string& what) const {
+    if (options_.progress) options_.progress(format("%6.1f s: ", now_s_() - began_s_) + what);
+  }
+
   [[nodiscard]] bool out_of_time() const { return now_s_() - began_s_ > task_.time_limit_s; }
 
   /// Such a planner has nothing but its one particle.
@@ -118,7 +127,11 @@ class Planning {
     });
     report_.expansions += report_.search.expanded.size();
     if (report_.refusals.empty()) report_.expansions_first = report_.expansions;
-    if (report_.search.has_path) return true;
+    if (report_.search.has_path) {
+      tell(format("a path of %zu steps after %zu expansions", report_.search.path.size(),
+                  report_.search.expanded.size()));
+      return true;
+    }
     const std::string after =
         format("%zu expansions and %zu refuted paths", report_.expansions, report_.refusals.size());
     if (report_.search.status == SearchStatus::kStopped) {
@@ -183,14 +196,31 @@ class Planning {
     if (shorten(plan, validation, distances_m)) {
       return Refutation{{}, std::nullopt, "a draw met a contact before the tool was slow"};
     }
-    const std::vector<Chain> good = good_chains(certification, validation);
-    const Plan judged = with_envelopes(plan, task_, good);
-    for (const Chain& chain : good) {
-      if (first_deviation(judged, chain) == chain.moves.size()) continue;
-      throw std::logic_error("an envelope does not hold what it was made from");
-    }
+    const Plan judged = enveloped(plan, good_chains(certification, validation));
     complete(judged, std::move(certification));
     return std::nullopt;
+  }
+
+  /// With envelopes around the chains, widened to more draws until all of a batch stay within them:
+  /// what one start in a hundred does is no reason to stop.
+  Plan enveloped(const Plan& plan, std::vector<Chain> good) {
+    Plan judged = with_envelopes(plan, task_, good);
+    for (std::uint64_t batch = 0; batch < kEnvelopeBatches; ++batch) {
+      const std::vector<Chain> more = validated(plan, kEnvelopeSeed + batch).good_chains();
+      if (std::all_of(more.begin(), more.end(), [&](const Chain& c) { return stays(judged, c); })) {
+        break;
+      }
+      good.insert(good.end(), more.begin(), more.end());
+      judged = with_envelopes(plan, task_, good);
+    }
+    for (const Chain& chain : good) {
+      if (!stays(judged, chain)) throw std::logic_error("an envelope excludes its own chain");
+    }
+    return judged;
+  }
+
+  static bool stays(const Plan& plan, const Chain& chain) {
+    return first_deviation(plan, chain) == chain.moves.size();
   }
 
   static Refutation refutation_of(const Certification& certification) {

@@ -38,6 +38,8 @@ struct PlannerOptions {
   ValidationParameters validation;
   std::size_t expansions_max = 5000;  ///< of one search
   std::size_t rounds_max = 100;       ///< searches, each without what the last ones had refuted
+  /// Told, in a line, what has just been done; may be empty.
+  std::function<void(const std::string&)> progress;
 };
 
 /// Seconds spent in each part.

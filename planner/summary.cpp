@@ -69,6 +69,21 @@ double peak_force_N(const PlanReport& report) {
   return peak_N;
 }
 
+/// A line for every draw that missed the goal: how unlikely its start was, and what stopped it.
+std::vector<std::string> missed(const PlanReport& report, const Task& task) {
+  std::vector<std::string> lines;
+  for (const Draw& draw : report.validation.draws) {
+    if (draw.at_goal) continue;
+    const Chain& chain = draw.chain;
+    const std::string what =
+        chain.done ? format("ended %.2f mm from the goal",
+                            1e3 * (chain.end().position_m - task.goal.position_m).norm())
+                   : format("step %zu: ", chain.steps.back()) + chain.failure;
+    lines.push_back(format("%.2f sigma out, ", draw.mahalanobis) + what);
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string cost_text(const Plan& plan) {
@@ -127,6 +142,7 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
              t.attractors_s, t.search_s, t.certification_s, t.validation_s);
   text += "validation: " + estimate_text(report.validation, task) +
           format(", peak force %.0f N\n", peak_force_N(report));
+  for (const std::string& draw : missed(report, task)) text += "missed: " + draw + "\n";
   for (const std::string& change : report.adapted) text += "for the cell: " + change + "\n";
   for (const std::string& refusal : report.refusals) text += "refuted: " + refusal + "\n";
   return text + step_table(plan);
@@ -166,6 +182,7 @@ std::string statistics_json(const PlanReport& report, const Task& task) {
     json["particle_sigmas"] = task.particle_sigmas;
     json["draws_within_particles"] = report.validation.within(task.particle_sigmas);
     json["draws_within_particles_at_goal"] = report.validation.at_goal_within(task.particle_sigmas);
+    json["missed"] = missed(report, task);
     json["peak_force_N"] = peak_force_N(report);
   }
   return json.dump(2) + "\n";

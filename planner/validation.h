@@ -37,10 +37,11 @@ struct Validation {
   [[nodiscard]] std::size_t moves() const;
 };
 
-/// The draws by which a plan is judged are not those that refuted other paths and made its
-/// envelopes.
+/// The draws by which a plan is judged are not those that refuted other paths, nor those that its
+/// envelopes were widened to.
 inline constexpr std::uint64_t kSearchSeed = 1;
 inline constexpr std::uint64_t kEstimateSeed = 2;
+inline constexpr std::uint64_t kEnvelopeSeed = 3;  ///< and the following ones
 
 struct ValidationParameters {
   std::size_t draws = 200;

@@ -211,14 +211,15 @@ void read_compliance(const Value& value, Task& task) {
 
 void read_search(const Value& value, Task& task) {
   const Map map(value, {"w1", "w2", "distance_weight_per_m", "uncertainty_weight_per_m2",
-                        "position_weight", "orientation_weight_m_per_rad", "attractor_ratio",
-                        "attractor_samples", "time_limit_s"});
+                        "move_weight", "position_weight", "orientation_weight_m_per_rad",
+                        "attractor_ratio", "attractor_samples", "time_limit_s"});
   constexpr Bounds kWeight = positive_to(1e12);
   constexpr Bounds kInflation = {1.0, 1e3};
   map.optional_number("w1", kInflation, task.w1);
   map.optional_number("w2", kInflation, task.w2);
   map.optional_number("distance_weight_per_m", kWeight, task.distance_weight_per_m);
   map.optional_number("uncertainty_weight_per_m2", kWeight, task.uncertainty_weight_per_m2);
+  map.optional_number("move_weight", {0.0, kWeight.high}, task.move_weight);
   map.optional_number("position_weight", kWeight, task.position_weight);
   map.optional_number("orientation_weight_m_per_rad", kWeight, task.orientation_weight);
   map.optional_number("attractor_ratio", positive_to(1.0), task.attractor_ratio);

@@ -84,6 +84,12 @@ TEST(ConsistentAnchor, WithOtherWeights) {
   EXPECT_GT(watched_search(task, WallRollout(room()), 500), 40U);
 }
 
+TEST(ConsistentAnchor, WithAPriceOnEveryMove) {
+  Task task = room_task();
+  task.move_weight = 300.0;
+  EXPECT_GT(watched_search(task, WallRollout(room()), 500), 40U);
+}
+
 TEST(ConsistentAnchor, OnRealPhysicsOfABoxOnATable) {
   const Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml");
   EXPECT_GE(watched_search(task, sim::OdeRollout(task), 12), 30U);

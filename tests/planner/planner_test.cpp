@@ -69,10 +69,16 @@ TEST(Planner, AStartThatRefutesAPathBecomesAParticle) {
   world.ledge_from_y_m = -0.095;
   world.ledge_to_y_m = -0.065;
   const Task task = room_task();
-  const PlanReport report = planned(task, world);
+  std::string said;
+  PlannerOptions options;
+  options.progress = [&](const std::string& line) { said += line + "\n"; };
+  const PlanReport report = planned(task, world, options);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
   EXPECT_EQ(report.validation.at_goal_within(2.0), report.validation.within(2.0));
   ASSERT_FALSE(report.refusals.empty());
+  for (const std::string& refusal : report.refusals) {
+    EXPECT_NE(said.find("0.0 s: refuted: " + refusal + "\n"), std::string::npos) << said;
+  }
   for (const std::string& refusal : report.refusals) {
     EXPECT_NE(refusal.find("missed the goal; it becomes a particle"), std::string::npos) << refusal;
   }

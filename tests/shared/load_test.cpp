@@ -36,7 +36,7 @@ contact:
   debounce_s: 0.006
   force_limit_N: 20.0
 compliance: {axes: [x, y, rz], mass_kg: 2, damping_Nspm: 1500, stiffness_Npm: 1000}
-search: {w1: 3, w2: 1.5}
+search: {w1: 3, w2: 1.5, move_weight: 0}
 physics:
   friction: {low: 0.1, nominal: 0.3, high: 0.6}
   contact_stiffness_Npm: 5e4
@@ -100,6 +100,7 @@ TEST(LoadTask, ReadsEveryValue) {
   EXPECT_EQ(task.w1, 3.0);
   EXPECT_EQ(task.w2, 1.5);
   EXPECT_EQ(task.distance_weight_per_m, Task{}.distance_weight_per_m);
+  EXPECT_EQ(task.move_weight, 0.0);
   EXPECT_EQ(task.friction.high, 0.6);
   EXPECT_EQ(task.oversize_m, 2.5e-4);
   EXPECT_EQ(task.rollout_step_us, 2000);
@@ -177,6 +178,7 @@ TEST(LoadTask, RefusesEachBadLineWithItsPlace) {
       {"axes: [x, y, rz]", "axes: [x, y]",
        ":19: compliance.axes: lacks the search coordinate rz: a rigid axis feels no contact"},
       {"w1: 3", "w1: 0.9", ":20: search.w1 = 0.9, must be in [1, 1000]"},
+      {"move_weight: 0", "move_weight: -1", ":20: search.move_weight = -1, must be in [0, 1e+12]"},
       {"high: 0.6", "high: 0.2", ":22: physics.friction.high = 0.2, must be in [0.3, 2]"},
       {"oversize_m: 2.5e-4", "oversize_m: 0.02",
        ":24: physics.oversize_m = 0.02, must be in [0, 0.01]"},
