@@ -280,16 +280,21 @@ Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngin
   if (!about_goal.particles.empty()) search.push_from(about_goal, {});
   if (!search.certain()) search.sample(rollout);
 
-  Attractors found{search.take(), {task.goal}};
-  if (const std::optional<Pose> mouth = search.mouth()) {
-    found.goals.push_back(*mouth);
-    if (!found.guides.empty()) {
-      Guide through = found.guides.front();
-      through.goals.insert(through.goals.begin(), *mouth);
-      found.guides.push_back(std::move(through));
-    }
+  Attractors found{search.take(), goal_attractors(task, start, succ)};
+  if (found.goals.size() > 1 && !found.guides.empty()) {
+    Guide through = found.guides.front();
+    through.goals.insert(through.goals.begin(), found.goals.back());
+    found.guides.push_back(std::move(through));
   }
   return found;
+}
+
+std::vector<Pose> goal_attractors(const Task& task, const Belief& start, SuccessorEngine& succ) {
+  std::vector<Pose> goals = {task.goal};
+  if (const std::optional<Pose> mouth = GuideSearch(task, start, succ).mouth()) {
+    goals.push_back(*mouth);
+  }
+  return goals;
 }
 
 }  // namespace tenon::planner

@@ -28,4 +28,8 @@ struct Attractors {
 [[nodiscard]] Attractors find_attractors(const Task& task, const Belief& start,
                                          SuccessorEngine& succ, Rollout& rollout);
 
+/// The goals alone, for a search without guides.
+[[nodiscard]] std::vector<Pose> goal_attractors(const Task& task, const Belief& start,
+                                                SuccessorEngine& succ);
+
 }  // namespace tenon::planner

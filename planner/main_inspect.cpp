@@ -77,20 +77,30 @@ planner::CellFit task_of(const Plan& plan, const std::string& file, const std::s
   return fit;
 }
 
+// What a repetition found, in lines.
+struct Verdict {
+  bool holds = true;
+  std::string text;
+
+  void add(bool good, const std::string& what, const std::string& line) {
+    holds = holds && good;
+    text += what + (good ? ": yes, " : ": NO, ") + line + "\n";
+  }
+};
+
 // The draws that the planner made, again. Their seed is always the same.
-bool validates(std::FILE* out, const Plan& plan, const Task& task, planner::RolloutPool& pool) {
+void validate_again(const Plan& plan, const Task& task, planner::RolloutPool& pool,
+                    Verdict& verdict) {
   planner::ValidationParameters parameters;
   parameters.draws = plan.draws;
   parameters.seed = planner::kEstimateSeed;
   const planner::Validation validation =
       planner::validate(plan, task, planner::start_of(plan, task), parameters, pool);
-  const bool same = validation.at_goal() == plan.draws_at_goal;
-  std::fprintf(out, "validated: %s%s\n", same ? "yes, " : "NO, ",
-               planner::estimate_text(validation, task).c_str());
-  return same;
+  verdict.add(validation.at_goal() == plan.draws_at_goal, "validated",
+              planner::estimate_text(validation, task));
 }
 
-bool recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
+Verdict recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
   if (plan.draws > kDrawsMax) {
     throw InputError(a.plan + ": draws = " + std::to_string(plan.draws) + ", must be at most " +
                      std::to_string(kDrawsMax) + " to be repeated");
@@ -108,30 +118,28 @@ bool recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint
   }
   planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
   const planner::Certification certification = planner::certify(bytes, task, pool);
-  std::FILE* out = a.json == "-" ? stderr : stdout;
+  Verdict verdict;
   for (const planner::VariantRun& run : certification.runs) {
-    if (run.holds) {
-      std::fprintf(out, "certified: yes, %s, %zu particle%s\n", run.variant.name.c_str(),
-                   run.chains.size(), run.chains.size() == 1 ? "" : "s");
-    } else {
-      std::fprintf(out, "certified: NO, %s: step %zu, particle %zu: %s\n", run.variant.name.c_str(),
-                   run.disagreement.step, run.disagreement.particle, run.disagreement.why.c_str());
-    }
+    const std::string line =
+        run.holds ? format(", %zu particle%s", run.chains.size(), run.chains.size() == 1 ? "" : "s")
+                  : format(": step %zu, particle %zu: ", run.disagreement.step,
+                           run.disagreement.particle) +
+                        run.disagreement.why;
+    verdict.add(run.holds, "certified", run.variant.name + line);
   }
-  const bool same_cost = std::abs(certification.cost - plan.cost) <= 1e-3 * certification.cost;
-  if (!same_cost) {
-    std::fprintf(out, "certified: NO, the plan says that it costs %.0f, its chain costs %.0f\n",
-                 plan.cost, certification.cost);
+  if (std::abs(certification.cost - plan.cost) > 1e-3 * certification.cost) {
+    verdict.add(false, "certified",
+                format("the plan says that it costs %.0f, its chain costs %.0f", plan.cost,
+                       certification.cost));
   }
-  const bool same_task = task.hash == plan.task_hash;
-  if (!same_task) {
-    std::fprintf(out, "certified: NO, the plan was made from another version of %s\n",
-                 a.recertify.c_str());
+  if (task.hash != plan.task_hash) {
+    verdict.add(false, "certified", "the plan was made from another version of " + a.recertify);
   }
-  const bool checks = plan.method != PlanMethod::kMha || plan.check_envelopes;
-  if (!checks) std::fprintf(out, "certified: NO, the plan checks no envelopes\n");
-  const bool valid = validates(out, plan, task, pool);
-  return certification.holds() && same_cost && same_task && checks && valid;
+  if (plan.method == PlanMethod::kMha && !plan.check_envelopes) {
+    verdict.add(false, "certified", "the plan checks no envelopes");
+  }
+  validate_again(plan, task, pool, verdict);
+  return verdict;
 }
 
 void write_report(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
@@ -149,6 +157,8 @@ void write_report(const Arguments& a, const Plan& plan, const std::vector<std::u
 int run(const Arguments& a) {
   const Plan plan = load_plan(a.plan);
   const std::vector<std::uint8_t> bytes = bytes_of(a.plan);
+  const Verdict verdict = a.recertify.empty() ? Verdict{} : recertify(a, plan, bytes);
+  if (!a.report.empty()) write_report(a, plan, bytes);
   if (a.json == "-") {
     std::fputs(planner::plan_json(plan, bytes.size()).c_str(), stdout);
   } else {
@@ -156,8 +166,8 @@ int run(const Arguments& a) {
     std::fputs(planner::header_text(plan, bytes.size()).c_str(), stdout);
     std::fputs(planner::step_table(plan).c_str(), stdout);
   }
-  if (!a.report.empty()) write_report(a, plan, bytes);
-  return a.recertify.empty() || recertify(a, plan, bytes) ? 0 : 1;
+  std::fputs(verdict.text.c_str(), a.json == "-" ? stderr : stdout);
+  return verdict.holds ? 0 : 1;
 }
 
 }  // namespace

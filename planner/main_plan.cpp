@@ -102,8 +102,7 @@ int run(const Arguments& a) {
     adapted = std::move(fit.changes);
   }
   const Start& start = chosen_start(task, a.start);
-  sim::OdeRollout rollout(task);
-  planner::check_start(task, start, rollout);
+  const sim::OdeRollout rollout(task);
 
   const auto began = std::chrono::steady_clock::now();
   const auto now_s = [&] {
@@ -117,6 +116,7 @@ int run(const Arguments& a) {
   } else if (!a.json.empty()) {
     write_file(a.json, planner::statistics_json(report, task));
   }
+  if (report.status == planner::PlanStatus::kInCollision) throw InputError(report.reason);
   if (report.status != planner::PlanStatus::kPlanned) {
     std::fprintf(stderr, "tenon-plan: no plan from start '%s': %s: %s\n", start.name.c_str(),
                  planner::to_string(report.status), report.reason.c_str());

@@ -24,21 +24,6 @@ constexpr double kForeseen_m = 1e-4;
 
 std::string where(const Vector3& p) { return format("(%.4f, %.4f, %.4f) m", p.x(), p.y(), p.z()); }
 
-/// Empty where start and particles are free.
-std::string start_collision(const Task& task, const Start& start, Rollout& rollout) {
-  if (rollout.in_collision(start.pose)) {
-    return "start '" + start.name + "' of task '" + task.name + "' at " +
-           where(start.pose.position_m) + " is in collision: move the start or the environment";
-  }
-  for (const Particle& particle : cross_polytope(task, start).particles) {
-    if (!rollout.in_collision(particle.pose)) continue;
-    return "start '" + start.name + "' of task '" + task.name + "' is in collision " +
-           format("%g", task.particle_sigmas) + " standard deviations out, at " +
-           where(particle.pose.position_m) + ": move the start or lower its sigma";
-  }
-  return {};
-}
-
 template <typename Work>
 auto timed(const std::function<double()>& now_s, double& seconds, Work work) {
   const double from_s = now_s();
@@ -63,8 +48,8 @@ class Planning {
 
   PlanReport run() {
     report_.method = options_.method;
-    const std::string collision = start_collision(task_, start_, pool_.front());
-    if (!collision.empty()) return finish(PlanStatus::kStartInCollision, collision);
+    const std::string overlap = collision(task_, start_, pool_.front());
+    if (!overlap.empty()) return finish(PlanStatus::kInCollision, overlap);
     belief_ = start_belief(task_, start_, options_.method);
     for (Particle& particle : belief_.particles) {
       particle.physics.contact_stiffness_Npm = options_.assumptions.contact_stiffness_Npm;
@@ -73,9 +58,10 @@ class Planning {
       return finish(PlanStatus::kAlreadyAtGoal,
                     "start '" + start_.name + "' is already within the goal's tolerances");
     }
-    attractors_ = timed(now_s_, report_.times.attractors_s,
-                        [&] { return find_attractors(task_, belief_, long_succ_, pool_.front()); });
-    if (is_baseline()) attractors_.guides.clear();
+    attractors_ = timed(now_s_, report_.times.attractors_s, [&] {
+      return is_baseline() ? Attractors{{}, goal_attractors(task_, belief_, long_succ_)}
+                           : find_attractors(task_, belief_, long_succ_, pool_.front());
+    });
     report_.attractors = attractors_.guides.size();
     tell(format("%zu guides, found with %llu moves", report_.attractors,
                 static_cast<unsigned long long>(long_succ_.counters().rollouts)));
@@ -365,8 +351,8 @@ const char* to_string(PlanStatus status) {
   switch (status) {
     case PlanStatus::kPlanned:
       return "planned";
-    case PlanStatus::kStartInCollision:
-      return "start in collision";
+    case PlanStatus::kInCollision:
+      return "in collision";
     case PlanStatus::kAlreadyAtGoal:
       return "already at the goal";
     case PlanStatus::kExhausted:
@@ -388,9 +374,25 @@ PlanReport make_plan(const Task& task, const Start& start, const Rollout& rollou
   return Planning(task, start, rollout, options, now_s).run();
 }
 
-void check_start(const Task& task, const Start& start, Rollout& rollout) {
-  const std::string collision = start_collision(task, start, rollout);
-  if (!collision.empty()) throw InputError(collision);
+std::string collision(const Task& task, const Start& start, Rollout& rollout) {
+  const std::string what = "start '" + start.name + "' of task '" + task.name + "' ";
+  if (rollout.in_collision(start.pose)) {
+    return what + "at " + where(start.pose.position_m) +
+           " is in collision: move the start or the environment";
+  }
+  for (const Particle& particle : cross_polytope(task, start).particles) {
+    if (!rollout.in_collision(particle.pose)) continue;
+    return what + "is in collision " + format("%g", task.particle_sigmas) +
+           " standard deviations out, at " + where(particle.pose.position_m) +
+           ": move the start or lower its sigma";
+  }
+  if (!rollout.in_collision(task.goal)) return {};
+  return "the goal of task '" + task.name + "' at " + where(task.goal.position_m) +
+         " is in collision" +
+         (task.oversize_m > 0.0
+              ? format(", with a part %g mm larger than drawn: move it or lower oversize_m",
+                       1e3 * task.oversize_m)
+              : ": move the goal or the environment");
 }
 
 }  // namespace tenon::planner

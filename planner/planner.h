@@ -19,7 +19,7 @@ namespace tenon::planner {
 
 enum class PlanStatus : std::uint8_t {
   kPlanned = 0,
-  kStartInCollision = 1,
+  kInCollision = 1,    ///< the start, a particle of it, or the goal
   kAlreadyAtGoal = 2,  ///< nothing to plan: no step is needed
   kExhausted = 3,      ///< the searched graph has no path left
   kNoAttractor = 4,    ///< likewise, and no push makes the start more certain
@@ -80,7 +80,8 @@ struct PlanReport {
                                    const PlannerOptions& options,
                                    const std::function<double()>& now_s);
 
-/// @throws InputError where the start, or a particle of it, collides with the environment
-void check_start(const Task& task, const Start& start, Rollout& rollout);
+/// Empty where start, particles and goal are free with the part as large as it may be; otherwise a
+/// line that says what is not, where, and what to do.
+[[nodiscard]] std::string collision(const Task& task, const Start& start, Rollout& rollout);
 
 }  // namespace tenon::planner

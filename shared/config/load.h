@@ -16,7 +16,7 @@
 namespace tenon {
 
 /// planner/tasks/*.yaml, or one of its variants: "FILE#VARIANT". Checks everything that can be told
-/// without physics; a start in collision is refused by check_starts() in the planner.
+/// without physics; the planner refuses a start or a goal in collision.
 [[nodiscard]] Task load_task(const std::filesystem::path& name);
 
 /// The names of a task file's variants, in its order.

@@ -83,6 +83,8 @@ TEST(BadInput, OfThePlannerIsOneLineAndStatusTwo) {
        {"nan.yaml:", "goal.tolerance_m", ".nan", "(0, 1]"}},
       {plan(task("wall.yaml", "[0.30, -0.20, 0.002]", "[0.48, -0.20, 0.002]")),
        {"start '4'", "in collision", "0.4800"}},
+      {plan(task("goal.yaml", "[0.25, -0.15, 0.002]", "[0.48, -0.15, 0.002]")),
+       {"the goal of task", "in collision", "0.4800"}},
       {plan(task("friction.yaml", "force_keep_N: 3.0", "force_keep_N: 5.0")),
        {"friction.yaml:", "force_on = 6 N", "9.75 N", "force_keep = 5 N"}},
       {plan(folder.path() / "none.yaml"), {"none.yaml", "cannot be read"}},

@@ -184,17 +184,23 @@ TEST(Planner, PhysicsThatChangesAtHalfTheStepIsRefutedAndSearchedAround) {
   EXPECT_FALSE(report.plan.has_value());
 }
 
-TEST(Planner, AStartInCollisionIsNamed) {
+TEST(Planner, AStartOrGoalInCollisionIsNamed) {
+  const auto reason = [](const Task& task) {
+    const PlanReport report = planned(task);
+    EXPECT_EQ(report.status, PlanStatus::kInCollision);
+    return report.reason;
+  };
   Task task = room_task();
   task.starts.front().pose.position_m.x() = -0.6;
-  EXPECT_EQ(planned(task).status, PlanStatus::kStartInCollision);
-  WallRollout rollout(room());
-  EXPECT_THROW(check_start(task, task.starts.front(), rollout), InputError);
+  EXPECT_NE(reason(task).find("at (-0.6"), std::string::npos);
   // A particle in the wall is enough.
   task.starts.front().pose.position_m.x() = -0.46;
-  EXPECT_EQ(planned(task).status, PlanStatus::kStartInCollision);
+  EXPECT_NE(reason(task).find("2 standard deviations out"), std::string::npos);
   task.starts.front().pose.position_m.x() = -0.43;
-  EXPECT_NO_THROW(check_start(task, task.starts.front(), rollout));
+  WallRollout rollout(room());
+  EXPECT_EQ(collision(task, task.starts.front(), rollout), "");
+  task.goal.position_m.x() = -0.6;
+  EXPECT_NE(reason(task).find("the goal of task"), std::string::npos);
 }
 
 TEST(Planner, AnUnreachableGoalExhaustsTheGraph) {
