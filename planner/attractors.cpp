@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "planner/normal_draws.h"
 
@@ -21,8 +22,6 @@ constexpr int kAttempts = 20;
 // Every order of contacts is tried, so there are not to be too many.
 constexpr std::size_t kMaxContactsAnAxis = 8;
 constexpr std::uint64_t kSampleSeed = 1;
-
-bool searched(const Task& task, int axis) { return (task.coordinates >> axis & 1U) != 0; }
 
 /// Corners of a box, along the task's axes, around everything that can be touched.
 Eigen::AlignedBox3d around(const std::vector<Shape>& shapes) {
@@ -40,15 +39,18 @@ Eigen::AlignedBox3d around(const std::vector<Shape>& shapes) {
 
 class GuideSearch {
  public:
-  GuideSearch(const Task& task, const Belief& start, SuccessorEngine& succ)
+  GuideSearch(const Task& task, const Belief& start, SuccessorEngine& succ,
+              std::function<bool()> stop = {})
       : task_(task),
         primitives_(long_primitives(task)),
         start_(start),
         seed_(summarise(start, task)),
-        succ_(succ) {}
+        succ_(succ),
+        stop_(std::move(stop)) {}
 
   /// Pushes along every axis that has not been pushed along yet, and on from there.
   void push_from(const Belief& belief, const std::vector<ContactAttractor>& before) {
+    if (stopped()) return;
     std::vector<Primitive> pushes = primitives_;
     std::erase_if(pushes, [&](const Primitive& push) { return contains(before, axis_of(push)); });
     const BeliefSummary from = summarise(belief, task_);
@@ -94,7 +96,7 @@ class GuideSearch {
       if (find_known(contact, of_axis) == of_axis.end()) of_axis.push_back(contact);
     }
     NormalDraws random(kSampleSeed);
-    for (std::size_t i = 0; i < task_.attractor_samples; ++i) {
+    for (std::size_t i = 0; i < task_.attractor_samples && !stopped(); ++i) {
       const Belief belief = drawn(random, rollout);
       if (!belief.particles.empty()) push_once(belief, known);
     }
@@ -150,6 +152,8 @@ class GuideSearch {
   }
 
  private:
+  [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
+
   /// The step labels count two directions an axis.
   [[nodiscard]] static int axis_of(const Primitive& push) { return push.label / 2; }
 
@@ -183,7 +187,7 @@ class GuideSearch {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       Pose place = seed_.mean;
       for (int axis = 0; axis < 3; ++axis) {
-        if (!searched(task_, axis)) continue;
+        if (!has(task_.coordinates, axis)) continue;
         place.position_m[axis] = box.min()[axis] + random.uniform() * box.sizes()[axis];
       }
       Belief belief = spread_about(place, rollout);
@@ -251,7 +255,7 @@ class GuideSearch {
   }
 
   [[nodiscard]] double weight_of(int axis) const {
-    return axis < 3 ? task_.position_weight : task_.orientation_weight;
+    return axis < 3 ? 1.0 : task_.orientation_weight;
   }
 
   /// Into a held contact or straight away from it.
@@ -267,14 +271,15 @@ class GuideSearch {
   const Belief& start_;
   BeliefSummary seed_;
   SuccessorEngine& succ_;
+  std::function<bool()> stop_;
   std::vector<Guide> found_;
 };
 
 }  // namespace
 
 Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngine& succ,
-                           Rollout& rollout) {
-  GuideSearch search(task, start, succ);
+                           Rollout& rollout, const std::function<bool()>& stop) {
+  GuideSearch search(task, start, succ, stop);
   search.push_from(start, {});
   const Belief about_goal = search.spread_about(task.goal, rollout);
   if (!about_goal.particles.empty()) search.push_from(about_goal, {});

@@ -2,6 +2,7 @@
 // Where uncertainty shrinks: beliefs after long pushes, found with a few dozen rollouts, and the
 // guides that lead from one to the next.
 
+#include <functional>
 #include <vector>
 
 #include "planner/heuristics.h"
@@ -25,8 +26,10 @@ struct Attractors {
 /// where a tool drawn straight out of the goal along a contact loses it.
 /// @param succ with moves at approach speed and time for long ones
 /// @param rollout asked for collisions only
+/// @param stop asked before every push where not empty; true leaves it at what has been found
 [[nodiscard]] Attractors find_attractors(const Task& task, const Belief& start,
-                                         SuccessorEngine& succ, Rollout& rollout);
+                                         SuccessorEngine& succ, Rollout& rollout,
+                                         const std::function<bool()>& stop = {});
 
 /// The goals alone, for a search without guides.
 [[nodiscard]] std::vector<Pose> goal_attractors(const Task& task, const Belief& start,

@@ -32,7 +32,7 @@ std::int64_t cell(double value, double size) {
 
 }  // namespace
 
-Metric metric_of(const Task& task) { return {task.position_weight, task.orientation_weight}; }
+Metric metric_of(const Task& task) { return {task.orientation_weight}; }
 
 Belief cross_polytope(const Task& task, const Start& start) {
   Belief belief;
@@ -41,7 +41,7 @@ Belief cross_polytope(const Task& task, const Start& start) {
   bool slippery = true;
   for (int axis = 0; axis < 6; ++axis) {
     const double offset = task.particle_sigmas * start.sigma[axis];
-    if ((task.coordinates >> axis & 1U) == 0 || offset == 0.0) continue;
+    if (!has(task.coordinates, axis) || offset == 0.0) continue;
     for (const double sign : {+1.0, -1.0}) {
       Vector6 displacement = Vector6::Zero();
       displacement[axis] = sign * offset;
@@ -82,14 +82,12 @@ double uncertainty(const Belief& belief, const Metric& metric) {
     orientation_rad2 += off.tail<3>().squaredNorm();
   }
   const auto count = static_cast<double>(belief.particles.size());
-  return (metric.position_weight * position_m2 + metric.orientation_weight * orientation_rad2) /
-         count;
+  return (position_m2 + metric.orientation_weight * orientation_rad2) / count;
 }
 
 double distance(const Pose& a, const Pose& b, const Metric& metric) {
   const Vector6 between = displacement_between(a, b);
-  return metric.position_weight * between.head<3>().norm() +
-         metric.orientation_weight * between.tail<3>().norm();
+  return between.head<3>().norm() + metric.orientation_weight * between.tail<3>().norm();
 }
 
 void append_cell(const Particle& particle, double cell_m, double cell_rad,

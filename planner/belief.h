@@ -16,9 +16,9 @@ struct Belief {
   std::vector<Particle> particles;  ///< never empty
 };
 
-/// Weights between position and orientation, the same in distances and in uncertainties.
+/// What an angle weighs beside a way, the same in distances and in uncertainties. Ways weigh 1, so
+/// that tolerances are metres.
 struct Metric {
-  double position_weight = 1.0;
   double orientation_weight = 0.1;  ///< m per rad
 };
 
@@ -39,16 +39,17 @@ struct Metric {
 /// Mean position, and the rotation from which the rotation vectors to all others sum up to zero.
 [[nodiscard]] Pose mean_pose(const Belief& belief);
 
-/// u = w_p Tr Cov(position) + w_o Tr Cov(orientation), population covariances, the orientation as
+/// u = Tr Cov(position) + w_o Tr Cov(orientation), population covariances, the orientation as
 /// rotation vectors about the mean (m^2).
 [[nodiscard]] double uncertainty(const Belief& belief, const Metric& metric);
 
-/// w_p |position difference| + w_o (angle between), m. A metric.
+/// |position difference| + w_o (angle between), m. A metric.
 [[nodiscard]] double distance(const Pose& a, const Pose& b, const Metric& metric);
 
 /// Two beliefs with equal keys are one state of the search: every particle in the same cell of a
-/// 1 mm, 0.2 degree grid and with the same contacts. States that differ only in their contacts
-/// differ: pressing and not pressing against a wall have different successors.
+/// 0.1 mm, 0.02 degree grid (a clearance is a few of them) and with the same contacts. States that
+/// differ only in their contacts differ: pressing and not pressing against a wall have different
+/// successors.
 using BeliefKey = std::vector<std::int64_t>;
 [[nodiscard]] BeliefKey identity(const Belief& belief);
 

@@ -34,7 +34,7 @@ struct Seen {
 
 Envelope widened(Envelope envelope, const EnvelopeMargins& margins, CoordinateMask coordinates) {
   for (int axis = 0; axis < 6; ++axis) {
-    if ((coordinates >> axis & 1U) == 0) {
+    if (!has(coordinates, axis)) {
       envelope.travelled_min[axis] = envelope.travelled_max[axis] = 0.0;
       continue;
     }

@@ -173,7 +173,7 @@ class Report {
   [[nodiscard]] std::string spread_text(const Vector6& spread) const {
     std::string text;
     for (int axis = 0; axis < 6; ++axis) {
-      if ((plan_.coordinates >> axis & 1U) == 0) continue;
+      if (!has(plan_.coordinates, axis)) continue;
       text += (text.empty() ? "" : ", ") + std::string(axis_name(axis)) + " " +
               amount(spread[axis], axis);
     }
@@ -392,7 +392,7 @@ class Report {
     if (!plan_.check_envelopes) return "not checked";
     std::string text;
     for (int axis = 0; axis < 6; ++axis) {
-      if ((plan_.coordinates >> axis & 1U) == 0) continue;
+      if (!has(plan_.coordinates, axis)) continue;
       text += format("%s%s %.1f to %.1f", text.empty() ? "" : ", ", axis_name(axis),
                      shown(rule.envelope.travelled_min[axis], axis),
                      shown(rule.envelope.travelled_max[axis], axis));

@@ -23,7 +23,8 @@ namespace {
 using namespace tenon;
 
 constexpr std::size_t kReportDraws = 200;
-constexpr std::size_t kDrawsMax = 100'000;  // as tenon-plan has it
+constexpr unsigned kDrawsMin = 200;         // as tenon-plan has it
+constexpr std::size_t kDrawsMax = 100'000;  // likewise
 
 struct Arguments {
   std::string plan;
@@ -137,6 +138,11 @@ Verdict recertify(const Arguments& a, const Plan& plan, const std::vector<std::u
   }
   if (plan.method == PlanMethod::kMha && !plan.check_envelopes) {
     verdict.add(false, "certified", "the plan checks no envelopes");
+  }
+  if (plan.draws < kDrawsMin) {
+    verdict.add(
+        false, "validated",
+        format("the plan is judged by %u draws, at least %u are wanted", plan.draws, kDrawsMin));
   }
   validate_again(plan, task, pool, verdict);
   return verdict;

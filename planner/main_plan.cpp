@@ -50,7 +50,8 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--threads", a.threads, "Threads; the plan does not depend on it")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  app.add_option("--time-limit", a.time_limit_s, "Seconds for the search (the task's)");
+  app.add_option("--time-limit", a.time_limit_s,
+                 "Seconds after which no path is searched for any more (the task's)");
   app.add_option("--draws", a.draws, "Random starts of the validation")
       ->check(CLI::Range(200, 100000))
       ->capture_default_str();
@@ -83,6 +84,8 @@ int run(const Arguments& a) {
     }
     task.time_limit_s = *a.time_limit_s;
   }
+  if (a.output == a.json)
+    throw InputError("--json: " + a.json + " is the plan's file: give another");
   check_writable(a.output);
   if (!a.json.empty() && a.json != "-") check_writable(a.json);
 

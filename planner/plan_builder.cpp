@@ -29,8 +29,9 @@ MoveParameters search_move(const Task& task, const Start& start,
 
 MoveParameters long_move(const Task& task, MoveParameters move) {
   move.slow_from_m = task.long_step_m;
-  move.timeout_us =
-      static_cast<std::uint32_t>(1e6 * (2.0 + 1.5 * task.long_step_m / move.speeds.approach_mps));
+  constexpr double kLongest_s = 4000.0;
+  const double time_s = 2.0 + 1.5 * task.long_step_m / move.speeds.approach_mps;
+  move.timeout_us = static_cast<std::uint32_t>(1e6 * std::min(time_s, kLongest_s));
   return move;
 }
 

@@ -60,7 +60,8 @@ class Planning {
     }
     attractors_ = timed(now_s_, report_.times.attractors_s, [&] {
       return is_baseline() ? Attractors{{}, goal_attractors(task_, belief_, long_succ_)}
-                           : find_attractors(task_, belief_, long_succ_, pool_.front());
+                           : find_attractors(task_, belief_, long_succ_, pool_.front(),
+                                             [this] { return out_of_time(); });
     });
     report_.attractors = attractors_.guides.size();
     tell(format("%zu guides, found with %llu moves", report_.attractors,
@@ -119,12 +120,17 @@ class Planning {
       return true;
     }
     const std::string after =
-        format("%zu expansions and %zu refuted paths", report_.expansions, report_.refusals.size());
+        format("%zu expansions and %zu refuted paths", report_.expansions,
+               report_.refusals.size()) +
+        nearest() + (report_.refusals.empty() ? "" : "; last refuted: " + report_.refusals.back());
     if (report_.search.status == SearchStatus::kStopped) {
       const bool late = out_of_time();
       finish(late ? PlanStatus::kTimeLimit : PlanStatus::kExpansionLimit,
-             late ? format("no path within %g s, after ", task_.time_limit_s) + after
-                  : "no path after " + after + ", the limit");
+             late ? format("no path within %g s (raise --time-limit), after ", task_.time_limit_s) +
+                        after
+                  : format("%zu expansions in a search, the limit: no path after ",
+                           options_.expansions_max) +
+                        after);
     } else if (report_.attractors == 0 && !is_baseline()) {
       finish(PlanStatus::kNoAttractor,
              "no push from the start reduces its uncertainty, and no path exists after " + after);
@@ -132,6 +138,20 @@ class Planning {
       finish(PlanStatus::kExhausted, "the searched graph has no path left after " + after);
     }
     return false;
+  }
+
+  /// How near the search has come.
+  [[nodiscard]] std::string nearest() const {
+    double nearest_m = std::numeric_limits<double>::infinity();
+    double certain_m2 = nearest_m;
+    for (StateId state = 0; state < graph_->size(); ++state) {
+      const BeliefSummary& belief = graph_->summary(state);
+      nearest_m = std::min(nearest_m, belief.farthest_m);
+      certain_m2 = std::min(certain_m2, belief.uncertainty_m2);
+    }
+    return format(
+        " (the nearest had all particles within %.1f mm of the goal, the most certain %.2g m^2)",
+        1e3 * nearest_m, certain_m2);
   }
 
   /// What speaks against a path.
@@ -173,26 +193,21 @@ class Planning {
       return refutation_of(certification);
     }
     const Validation validation = validated(plan, kSearchSeed);
-    for (const Draw& draw : validation.draws) {
-      if (draw.at_goal || draw.mahalanobis > task_.particle_sigmas) continue;
+    if (const auto miss = missed(validation)) {
       distances_m.assign(distances_m.size(), 0.0);
-      return Refutation{draw.chain, std::nullopt,
-                        format("a draw %.2f sigma out missed the goal", draw.mahalanobis)};
+      return miss;
     }
     if (shorten(plan, validation, distances_m)) {
       return Refutation{{}, std::nullopt, "a draw met a contact before the tool was slow"};
     }
-    const Plan judged = enveloped(plan, good_chains(certification, validation));
-    complete(judged, std::move(certification));
-    return std::nullopt;
-  }
-
-  /// With envelopes around the chains, widened to more draws until all of a batch stay within them:
-  /// what one start in a hundred does is no reason to stop.
-  Plan enveloped(const Plan& plan, std::vector<Chain> good) {
+    // Envelopes around the chains, widened to more draws until all of a batch stay within them:
+    // what one start in a hundred does is no reason to stop.
+    std::vector<Chain> good = good_chains(certification, validation);
     Plan judged = with_envelopes(plan, task_, good);
     for (std::uint64_t batch = 0; batch < kEnvelopeBatches; ++batch) {
-      const std::vector<Chain> more = validated(plan, kEnvelopeSeed + batch).good_chains();
+      const Validation further = validated(plan, kEnvelopeSeed + batch);
+      if (const auto miss = missed(further)) return miss;
+      const std::vector<Chain> more = further.good_chains();
       if (std::all_of(more.begin(), more.end(), [&](const Chain& c) { return stays(judged, c); })) {
         break;
       }
@@ -202,7 +217,18 @@ class Planning {
     for (const Chain& chain : good) {
       if (!stays(judged, chain)) throw std::logic_error("an envelope excludes its own chain");
     }
-    return judged;
+    complete(judged, std::move(certification));
+    return std::nullopt;
+  }
+
+  /// The first draw within the particles' reach that missed the goal.
+  [[nodiscard]] std::optional<Refutation> missed(const Validation& validation) const {
+    for (const Draw& draw : validation.draws) {
+      if (draw.at_goal || draw.mahalanobis > task_.particle_sigmas) continue;
+      return Refutation{draw.chain, std::nullopt,
+                        format("a draw %.2f sigma out missed the goal", draw.mahalanobis)};
+    }
+    return std::nullopt;
   }
 
   static bool stays(const Plan& plan, const Chain& chain) {
@@ -284,7 +310,7 @@ class Planning {
     Validation result = timed(now_s_, report_.times.validation_s, [&] {
       ValidationParameters parameters = options_.validation;
       parameters.seed = seed;
-      parameters.stop_when_refuted = seed == kSearchSeed;
+      parameters.stop_when_refuted = seed != kEstimateSeed;
       return validate(plan, task_, start_, parameters, pool_);
     });
     report_.validation_moves += result.moves();
@@ -375,24 +401,22 @@ PlanReport make_plan(const Task& task, const Start& start, const Rollout& rollou
 }
 
 std::string collision(const Task& task, const Start& start, Rollout& rollout) {
-  const std::string what = "start '" + start.name + "' of task '" + task.name + "' ";
+  const std::string overlaps =
+      task.oversize_m > 0.0
+          ? format(" is in collision with a part %g mm larger than drawn", 1e3 * task.oversize_m)
+          : " is in collision";
+  const std::string what = "start '" + start.name + "' of task '" + task.name + "' at ";
   if (rollout.in_collision(start.pose)) {
-    return what + "at " + where(start.pose.position_m) +
-           " is in collision: move the start or the environment";
+    return what + where(start.pose.position_m) + overlaps + ": move the start or the environment";
   }
   for (const Particle& particle : cross_polytope(task, start).particles) {
     if (!rollout.in_collision(particle.pose)) continue;
-    return what + "is in collision " + format("%g", task.particle_sigmas) +
-           " standard deviations out, at " + where(particle.pose.position_m) +
-           ": move the start or lower its sigma";
+    return what + where(particle.pose.position_m) + ", " + format("%g", task.particle_sigmas) +
+           " standard deviations out," + overlaps + ": move the start or lower its sigma";
   }
   if (!rollout.in_collision(task.goal)) return {};
-  return "the goal of task '" + task.name + "' at " + where(task.goal.position_m) +
-         " is in collision" +
-         (task.oversize_m > 0.0
-              ? format(", with a part %g mm larger than drawn: move it or lower oversize_m",
-                       1e3 * task.oversize_m)
-              : ": move the goal or the environment");
+  return "the goal of task '" + task.name + "' at " + where(task.goal.position_m) + overlaps +
+         ": move it or the environment" + (task.oversize_m > 0.0 ? ", or lower oversize_m" : "");
 }
 
 }  // namespace tenon::planner

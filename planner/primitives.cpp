@@ -6,13 +6,11 @@ namespace {
 // Shorter direct moves change nothing that anybody could measure.
 constexpr double kNoMove = 1e-4;
 
-bool searched(const Task& task, int axis) { return (task.coordinates >> axis & 1U) != 0; }
-
 std::vector<Primitive> both_ways(const Task& task, double step_m, double step_rad) {
   std::vector<Primitive> primitives;
   for (int axis = 0; axis < 6; ++axis) {
     const double step = axis < 3 ? step_m : step_rad;
-    if (!searched(task, axis) || step == 0.0) continue;
+    if (!has(task.coordinates, axis) || step == 0.0) continue;
     for (const int sign : {+1, -1}) {
       Primitive primitive;
       primitive.label = 2 * axis + (sign > 0 ? 0 : 1);
@@ -40,7 +38,7 @@ std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean, co
                                           int label) {
   Vector6 displacement = displacement_between(mean, place);
   for (int axis = 0; axis < 6; ++axis) {
-    if (!searched(task, axis)) displacement[axis] = 0.0;
+    if (!has(task.coordinates, axis)) displacement[axis] = 0.0;
   }
   if (displacement.head<3>().norm() > task.direct_reach_m) return std::nullopt;
   if (displacement.cwiseAbs().maxCoeff() < kNoMove) return std::nullopt;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planner/text.h"
+#include "shared/task/inserted.h"
 
 namespace tenon::planner {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 std::string displacement_text(const Plan& plan, const Vector6& displacement) {
   std::string text;
   for (int axis = 0; axis < 6; ++axis) {
-    if ((plan.coordinates >> axis & 1U) == 0 || displacement[axis] == 0.0) continue;
+    if (!has(plan.coordinates, axis) || displacement[axis] == 0.0) continue;
     text += format("%s%s %+.1f", text.empty() ? "" : ", ", axis_name(axis),
                    shown(displacement[axis], axis));
   }
@@ -27,7 +28,7 @@ std::string successor_text(Successor successor) {
 std::string envelope_text(const Plan& plan, const Envelope& envelope) {
   std::string text;
   for (int axis = 0; axis < 6; ++axis) {
-    if ((plan.coordinates >> axis & 1U) == 0) continue;
+    if (!has(plan.coordinates, axis)) continue;
     text += format(" %s [%.1f, %.1f]", axis_name(axis), shown(envelope.travelled_min[axis], axis),
                    shown(envelope.travelled_max[axis], axis));
   }
@@ -76,9 +77,12 @@ std::vector<std::string> missed(const PlanReport& report, const Task& task) {
     if (draw.at_goal) continue;
     const Chain& chain = draw.chain;
     const std::string what =
-        chain.done ? format("ended %.2f mm from the goal",
-                            1e3 * (chain.end().position_m - task.goal.position_m).norm())
-                   : format("step %zu: ", chain.steps.back()) + chain.failure;
+        chain.done
+            ? format("ended %.2f mm and %.2f degrees from the goal",
+                     1e3 * (chain.end().position_m - task.goal.position_m).norm(),
+                     shown(chain.end().orientation.angularDistance(task.goal.orientation), 3)) +
+                  (inserted(task, chain.end()) ? "" : ", not inserted")
+            : format("step %zu: ", chain.steps.back()) + chain.failure;
     lines.push_back(format("%.2f sigma out, ", draw.mahalanobis) + what);
   }
   return lines;
@@ -177,6 +181,8 @@ std::string statistics_json(const PlanReport& report, const Task& task) {
     json["bytes"] = report.bytes.size();
     json["cost"] = report.plan->cost;
     json["bound"] = report.plan->bound;
+    json["search_cost"] = report.search.cost;
+    json["search_lower_bound"] = report.search.lower_bound;
     json["draws"] = report.plan->draws;
     json["draws_at_goal"] = report.plan->draws_at_goal;
     json["particle_sigmas"] = task.particle_sigmas;

@@ -30,7 +30,7 @@ DrawnStart draw_start(NormalDraws& random, const Plan& plan, const Task& task, c
     Vector6 offset = Vector6::Zero();
     double squares = 0.0;
     for (int axis = 0; axis < 6; ++axis) {
-      if ((task.coordinates >> axis & 1U) == 0 || start.sigma[axis] == 0.0) continue;
+      if (!has(task.coordinates, axis) || start.sigma[axis] == 0.0) continue;
       const double z = random.normal();
       squares += z * z;
       offset[axis] = z * start.sigma[axis];
@@ -51,7 +51,7 @@ DrawnStart draw_start(NormalDraws& random, const Plan& plan, const Task& task, c
 std::vector<Vector6> rim_directions(const Task& task, const Start& start) {
   std::vector<int> axes;
   for (int axis = 0; axis < 6; ++axis) {
-    if ((task.coordinates >> axis & 1U) != 0 && start.sigma[axis] > 0.0) axes.push_back(axis);
+    if (has(task.coordinates, axis) && start.sigma[axis] > 0.0) axes.push_back(axis);
   }
   std::vector<Vector6> directions;
   for (const int axis : axes) {

@@ -23,8 +23,6 @@ constexpr std::size_t kShapesMax = 200;
 constexpr std::size_t kStartsMax = 200;
 constexpr double kSizeMax_m = 100.0;
 
-bool has(CoordinateMask mask, int axis) { return (mask >> axis & 1U) != 0; }
-
 std::uint32_t microseconds(double time_s) {
   return static_cast<std::uint32_t>(std::llround(1e6 * time_s));
 }
@@ -211,16 +209,15 @@ void read_compliance(const Value& value, Task& task) {
 
 void read_search(const Value& value, Task& task) {
   const Map map(value, {"w1", "w2", "distance_weight_per_m", "uncertainty_weight_per_m2",
-                        "move_weight", "position_weight", "orientation_weight_m_per_rad",
-                        "attractor_ratio", "attractor_samples", "time_limit_s"});
-  constexpr Bounds kWeight = positive_to(1e12);
+                        "move_weight", "orientation_weight_m_per_rad", "attractor_ratio",
+                        "attractor_samples", "time_limit_s"});
+  constexpr Bounds kWeight = positive_to(1e9);
   constexpr Bounds kInflation = {1.0, 1e3};
   map.optional_number("w1", kInflation, task.w1);
   map.optional_number("w2", kInflation, task.w2);
   map.optional_number("distance_weight_per_m", kWeight, task.distance_weight_per_m);
   map.optional_number("uncertainty_weight_per_m2", kWeight, task.uncertainty_weight_per_m2);
   map.optional_number("move_weight", {0.0, kWeight.high}, task.move_weight);
-  map.optional_number("position_weight", kWeight, task.position_weight);
   map.optional_number("orientation_weight_m_per_rad", kWeight, task.orientation_weight);
   map.optional_number("attractor_ratio", positive_to(1.0), task.attractor_ratio);
   if (const auto samples = map.find("attractor_samples")) {
@@ -244,6 +241,21 @@ void read_physics(const Value& value, Task& task) {
   double step_s = std::min(0.002, step_max_s);
   map.optional_number("rollout_step_s", {1e-4, step_max_s}, step_s);
   task.rollout_step_us = microseconds(step_s);
+}
+
+/// Every move may run at contact speed throughout.
+void check_time_for_a_step(const Value& primitives, const Task& task) {
+  const SpeedLimits& speeds = task.motion.speeds;
+  const double step_s =
+      std::max(task.step_m / speeds.contact_mps,
+               has(task.coordinates, 3) || has(task.coordinates, 4) || has(task.coordinates, 5)
+                   ? task.step_rad / speeds.contact_radps
+                   : 0.0);
+  const double timeout_s = 1e-6 * task.motion.timeout_us;
+  if (step_s <= timeout_s) return;
+  primitives.refuse("a step takes " + format("%g", step_s) +
+                    " s at contact speed, contact.timeout_s is " + format("%g", timeout_s) +
+                    " s: shorter steps, more speed or more time");
 }
 
 /// With the variant's name behind it, as long as a plan can hold.
@@ -288,6 +300,7 @@ Task load_task(const std::filesystem::path& name) {
   read_contact(map.at("contact"), task);
   read_compliance(map.at("compliance"), task);
   if (const auto search = map.find("search")) read_search(*search, task);
+  check_time_for_a_step(map.at("primitives"), task);
   return task;
 }
 

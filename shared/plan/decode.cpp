@@ -97,7 +97,7 @@ OutcomeRule read_outcome(FieldReader& reader, CoordinateMask coordinates, std::s
     reader.fail(PlanError::kRange, "possible");
   }
   for (int axis = 0; axis < 6; ++axis) {
-    if (!in(coordinates, axis)) continue;
+    if (!has(coordinates, axis)) continue;
     envelope.travelled_min[axis] = reader.f32("travelled_min", kTravel);
     envelope.travelled_max[axis] = reader.f32("travelled_max", kTravel);
     if (envelope.travelled_min[axis] > envelope.travelled_max[axis]) {
@@ -116,7 +116,7 @@ Step read_step(FieldReader& reader, const Plan& plan, std::size_t index, std::si
   const auto outcomes = reader.whole<std::uint8_t>("outcomes", 0, (1U << kOutcomes.size()) - 1);
   step.slow_from_m = reader.f32("slow_from_m", kSlowFrom);
   for (int axis = 0; axis < 6; ++axis) {
-    if (in(plan.coordinates, axis)) step.displacement[axis] = reader.f32("displacement", kTravel);
+    if (has(plan.coordinates, axis)) step.displacement[axis] = reader.f32("displacement", kTravel);
   }
   for (std::size_t outcome = 0; outcome < kOutcomes.size(); ++outcome) {
     if ((outcomes >> outcome & 1U) == 0) continue;

@@ -90,7 +90,7 @@ void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates) {
   out.write(static_cast<std::uint8_t>(outcomes));
   out.write(f32(step.slow_from_m));
   for (int axis = 0; axis < 6; ++axis) {
-    if (in(coordinates, axis)) out.write(f32(step.displacement[axis]));
+    if (has(coordinates, axis)) out.write(f32(step.displacement[axis]));
   }
   for (const OutcomeRule& rule : step.outcomes) {
     if (rule.successor == kSuccessorFail) continue;
@@ -99,7 +99,7 @@ void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates) {
     out.write(envelope.always.bits);
     out.write(envelope.possible.bits);
     for (int axis = 0; axis < 6; ++axis) {
-      if (!in(coordinates, axis)) continue;
+      if (!has(coordinates, axis)) continue;
       out.write(f32_down(envelope.travelled_min[axis]));
       out.write(f32_up(envelope.travelled_max[axis]));
     }
@@ -133,7 +133,7 @@ void check_representable(const Plan& plan) {
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     const Step& step = plan.steps[i];
     for (int axis = 0; axis < 6; ++axis) {
-      if (in(plan.coordinates, axis)) continue;
+      if (has(plan.coordinates, axis)) continue;
       bool zero = step.displacement[axis] == 0.0;
       for (const OutcomeRule& rule : step.outcomes) {
         if (rule.successor == kSuccessorFail) continue;

@@ -26,6 +26,5 @@ inline std::size_t axes_in(CoordinateMask coordinates) {
 }
 inline std::size_t step_size(CoordinateMask coordinates) { return 6 + 4 * axes_in(coordinates); }
 inline std::size_t outcome_size(CoordinateMask coordinates) { return 5 + 8 * axes_in(coordinates); }
-inline bool in(CoordinateMask coordinates, int axis) { return (coordinates >> axis & 1U) != 0; }
 
 }  // namespace tenon::plan_format

@@ -15,6 +15,7 @@ namespace tenon {
 
 /// Bit a (0..5: x y z rx ry rz).
 using CoordinateMask = std::uint8_t;
+[[nodiscard]] constexpr bool has(CoordinateMask mask, int axis) { return (mask >> axis & 1U) != 0; }
 
 /// Where an outcome leads: a step index, or one of the two ends.
 using Successor = std::uint8_t;

@@ -13,7 +13,7 @@ Transition transition(const Plan& plan, std::size_t step, const GuardedMove::Res
 
   const Envelope& envelope = rule.envelope;
   for (int axis = 0; axis < 6; ++axis) {
-    if ((plan.coordinates >> axis & 1U) == 0) continue;
+    if (!has(plan.coordinates, axis)) continue;
     const double travelled = result.travelled[axis];
     if (!(travelled >= envelope.travelled_min[axis] && travelled <= envelope.travelled_max[axis])) {
       return {kSuccessorFail, Deviation::kTravelOutside, axis};

@@ -72,8 +72,7 @@ struct Task {
   double distance_weight_per_m = 5e3;        ///< w_d
   double uncertainty_weight_per_m2 = 2.5e6;  ///< w_u
   double move_weight = 0.0;                  ///< w_m, of every move; none in the paper
-  double position_weight = 1.0;              ///< w_p
-  double orientation_weight = 0.1;           ///< w_o, m per rad
+  double orientation_weight = 0.1;           ///< w_o, m per rad; a metre of way weighs 1
   double attractor_ratio = 0.6;              ///< c_u
   std::size_t attractor_samples = 0;         ///< drawn places, where start and goal do not suffice
   double time_limit_s = 60.0;

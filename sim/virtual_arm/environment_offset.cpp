@@ -23,7 +23,7 @@ Vector6 draw_offset(const Start& start, CoordinateMask coordinates, std::uint64_
   for (int axis = 0; axis < 6; ++axis) {
     // Every axis takes a number, so that an axis more leaves the draws of the others alone.
     const double value = source.next();
-    if ((coordinates >> axis & 1U) != 0) offset[axis] = start.sigma[axis] * value;
+    if (has(coordinates, axis)) offset[axis] = start.sigma[axis] * value;
   }
   return offset;
 }

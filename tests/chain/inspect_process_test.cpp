@@ -73,6 +73,10 @@ TEST_F(Recertify, RefusesWhatNobodyChecked) {
   const Ended miscounted = recertify(changed([](Plan& plan) { plan.draws_at_goal = 7; }));
   EXPECT_EQ(miscounted.status, 1);
   EXPECT_NE(miscounted.out.find("validated: NO"), std::string::npos);
+  const Ended undrawn = recertify(changed([](Plan& plan) { plan.draws = plan.draws_at_goal = 0; }));
+  EXPECT_EQ(undrawn.status, 1);
+  EXPECT_NE(undrawn.out.find("validated: NO, the plan is judged by 0 draws, at least 200"),
+            std::string::npos);
   EXPECT_EQ(recertify(changed([](Plan& plan) { plan.latency_max_s = 1.0; })).status, 2);
   EXPECT_EQ(recertify(changed([](Plan& plan) { plan.contact_stiffness_Npm *= 10.0; })).status, 2);
 }

@@ -78,7 +78,7 @@ TEST(ConsistentAnchor, WithAnInsertedPredicate) {
 
 TEST(ConsistentAnchor, WithOtherWeights) {
   Task task = room_task();
-  task.position_weight = 3.0;
+  task.orientation_weight = 3.0;
   task.distance_weight_per_m = 1.0;
   task.uncertainty_weight_per_m2 = 7e4;
   EXPECT_GT(watched_search(task, WallRollout(room()), 500), 40U);

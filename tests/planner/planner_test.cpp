@@ -226,7 +226,17 @@ TEST(Planner, TheTimeLimitIsAReasonOfItsOwn) {
   const PlanReport report =
       make_plan(task, task.starts.front(), WallRollout(room()), {}, [&] { return now_s += 20.0; });
   EXPECT_EQ(report.status, PlanStatus::kTimeLimit);
-  EXPECT_NE(report.reason.find("60 s"), std::string::npos);
+  EXPECT_NE(report.reason.find("60 s (raise --time-limit)"), std::string::npos) << report.reason;
+  EXPECT_NE(report.reason.find("the nearest had all particles within "), std::string::npos);
+}
+
+TEST(Planner, TheTimeLimitHoldsForTheAttractorsToo) {
+  const Task task = room_task();
+  double now_s = 0.0;
+  const PlanReport report =
+      make_plan(task, task.starts.front(), WallRollout(room()), {}, [&] { return now_s += 61.0; });
+  EXPECT_EQ(report.status, PlanStatus::kTimeLimit);
+  EXPECT_EQ(report.attractors, 0U);
 }
 
 TEST(Planner, TheExpansionLimitIsAReasonOfItsOwn) {

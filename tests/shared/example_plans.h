@@ -72,7 +72,7 @@ inline Plan long_plan(CoordinateMask coordinates, std::size_t steps,
       rule.envelope.possible = {0x0005};
     }
     for (int axis = 0; axis < 6; ++axis) {
-      if ((coordinates >> axis & 1U) == 0) continue;
+      if (!has(coordinates, axis)) continue;
       step.displacement[axis] = 0.1 * (axis + 1) - 0.017 * static_cast<double>(i);
       for (const Outcome outcome : outcomes) {
         Envelope& envelope = step.outcomes[static_cast<std::size_t>(outcome)].envelope;

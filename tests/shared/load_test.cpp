@@ -167,6 +167,9 @@ TEST(LoadTask, RefusesEachBadLineWithItsPlace) {
       {"tolerance_m: 0.002",
        "tolerance_m:", ":10: goal.tolerance_m is empty, must be a number in (0, 1]"},
       {"pose: {position_m: [0.2, 0, 0]}, ", "", ":10: goal: the required key pose is missing"},
+      {"contact_mps: 0.05", "contact_mps: 0.005",
+       ":11: primitives: a step takes 20 s at contact speed, contact.timeout_s is 10 s: shorter "
+       "steps, more speed or more time"},
       {"contact_mps: 0.05", "contact_mps: 0.2",
        ":12: speeds.contact_mps = 0.2, must be in (0, 0.1]"},
       {"long_step_m: 1.0", "long_step_m: 0.01",
@@ -178,7 +181,7 @@ TEST(LoadTask, RefusesEachBadLineWithItsPlace) {
       {"axes: [x, y, rz]", "axes: [x, y]",
        ":19: compliance.axes: lacks the search coordinate rz: a rigid axis feels no contact"},
       {"w1: 3", "w1: 0.9", ":20: search.w1 = 0.9, must be in [1, 1000]"},
-      {"move_weight: 0", "move_weight: -1", ":20: search.move_weight = -1, must be in [0, 1e+12]"},
+      {"move_weight: 0", "move_weight: -1", ":20: search.move_weight = -1, must be in [0, 1e+09]"},
       {"high: 0.6", "high: 0.2", ":22: physics.friction.high = 0.2, must be in [0.3, 2]"},
       {"oversize_m: 2.5e-4", "oversize_m: 0.02",
        ":24: physics.oversize_m = 0.02, must be in [0, 0.01]"},

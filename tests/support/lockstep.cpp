@@ -83,7 +83,7 @@ Vector6 draw_offset(const Task& task, const Start& start, std::uint64_t seed, do
   Vector6 offset = Vector6::Zero();
   double squares = 0.0;
   for (int axis = 0; axis < 6; ++axis) {
-    if ((task.coordinates >> axis & 1U) == 0) continue;
+    if (!has(task.coordinates, axis)) continue;
     const double normal =
         std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
     offset[axis] = normal * start.sigma[axis];
