@@ -193,7 +193,7 @@ class Planning {
       return refutation_of(certification);
     }
     const Validation validation = validated(plan, kSearchSeed);
-    if (const auto miss = missed(validation)) {
+    if (auto miss = missed(validation)) {
       distances_m.assign(distances_m.size(), 0.0);
       return miss;
     }
@@ -206,7 +206,7 @@ class Planning {
     Plan judged = with_envelopes(plan, task_, good);
     for (std::uint64_t batch = 0; batch < kEnvelopeBatches; ++batch) {
       const Validation further = validated(plan, kEnvelopeSeed + batch);
-      if (const auto miss = missed(further)) return miss;
+      if (auto miss = missed(further)) return miss;
       const std::vector<Chain> more = further.good_chains();
       if (std::all_of(more.begin(), more.end(), [&](const Chain& c) { return stays(judged, c); })) {
         break;
@@ -409,10 +409,14 @@ std::string collision(const Task& task, const Start& start, Rollout& rollout) {
   if (rollout.in_collision(start.pose)) {
     return what + where(start.pose.position_m) + overlaps + ": move the start or the environment";
   }
-  for (const Particle& particle : cross_polytope(task, start).particles) {
-    if (!rollout.in_collision(particle.pose)) continue;
-    return what + where(particle.pose.position_m) + ", " + format("%g", task.particle_sigmas) +
-           " standard deviations out," + overlaps + ": move the start or lower its sigma";
+  const Belief belief = cross_polytope(task, start);
+  const auto inside =
+      std::find_if(belief.particles.begin(), belief.particles.end(),
+                   [&](const Particle& particle) { return rollout.in_collision(particle.pose); });
+  if (inside != belief.particles.end()) {
+    return what + where(inside->pose.position_m) +
+           format(", %g standard deviations out,", task.particle_sigmas) + overlaps +
+           ": move the start or lower its sigma";
   }
   if (!rollout.in_collision(task.goal)) return {};
   return "the goal of task '" + task.name + "' at " + where(task.goal.position_m) + overlaps +
