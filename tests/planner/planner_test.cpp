@@ -86,6 +86,29 @@ TEST(Planner, AStartThatRefutesAPathBecomesAParticle) {
   EXPECT_LE(report.plan->bound, task.w1 * task.w2);
 }
 
+TEST(Planner, ADrawThatOnlyTheEnvelopesWouldHaveSeenRefutesThePathToo) {
+  const Task task = room_task();
+  const Start& start = task.starts.front();
+  Plan free = *planned(task).plan;
+  free.check_envelopes = false;
+  // The ledge is so narrow that none of the first draws meets it.
+  WallRollout::World world = room();
+  world.ledge_m = 0.05;
+  world.ledge_from_y_m = -0.1130;
+  world.ledge_to_y_m = -0.1125;
+  RolloutPool pool(WallRollout(world), 1);
+  const auto missed = [&](std::uint64_t seed) {
+    const Validation validation = validate(free, task, start, {200, seed, false}, pool);
+    return validation.within(2.0) - validation.at_goal_within(2.0);
+  };
+  ASSERT_EQ(missed(kSearchSeed), 0U);
+  ASSERT_GT(missed(kEnvelopeSeed), 0U);
+  const PlanReport report = planned(task, world);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+  ASSERT_EQ(report.refusals.size(), 1U);
+  EXPECT_NE(report.refusals[0].find("missed the goal; it becomes a particle"), std::string::npos);
+}
+
 TEST(Planner, AnOutcomeThatNoDrawHadLeadsToFail) {
   const PlanReport report = planned(room_task());
   ASSERT_EQ(report.status, PlanStatus::kPlanned);
