@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <ostream>
 #include <set>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ struct Setting {
   std::string file;  // "box_on_table_2d.yaml", "box_on_table_2d.yaml#paper", ...
   std::string start;
 };
+
+std::ostream& operator<<(std::ostream& out, const Setting& setting) {
+  return out << setting.file << " from " << setting.start;
+}
 
 Task task_of(const std::string& file) {
   return load_task(TENON_SOURCE_DIR "/planner/tasks/" + file);
