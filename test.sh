@@ -1,15 +1,21 @@
 #!/bin/bash
-# Checks everything: installs what is missing, then format, lint, build and tests, the tests that need a
-# kernel with CAN, and the tests again under sanitizers. Exit status 0 if all of it passed.
+# Checks Tenon: installs what is missing, then format, lint, build and tests, the tests that need a kernel
+# with CAN, and the tests again under sanitizers. Exit status 0 if all of it passed.
 #
-#   ./test.sh                  everything
-#   ./test.sh STAGE...         only these stages, of: format lint unit guest asan
+#   ./test.sh                  what a commit needs
+#   ./test.sh full             what a release needs: also every start of every task and variant, the long
+#                              studies, clang-tidy and its analyzer on every file, changed or not
+#   ./test.sh [full] STAGE...  only these stages, of: format lint unit guest asan
 #                              and on demand: tsan fuzz
+#
+# A run of all stages that passed leaves the hash of the tree that it passed on in build/tested: who asks
+# whether a commit was tested compares it with `git rev-parse COMMIT^{tree}`.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")" || exit 1
 
 all_stages=(format lint unit guest asan)
 jobs=$(nproc)
+tier=commit
 
 # --- helpers ----------------------------------------------------------------------------------------
 
@@ -17,6 +23,14 @@ section() { printf '\n======== %s ========\n' "$*"; }
 
 sources() {
   find shared planner executor hw sim tests -name '*.h' -o -name '*.cpp' | LC_ALL=C sort
+}
+
+# What git calls the tree of all files that are here now and not ignored; empty where there is no git.
+tree_hash() {
+  local index
+  index=$(mktemp -u)
+  GIT_INDEX_FILE=$index git add --all 2>/dev/null && GIT_INDEX_FILE=$index git write-tree 2>/dev/null
+  rm -f "$index"
 }
 
 # Configures a preset; says nothing unless it fails.
@@ -66,13 +80,23 @@ stage_lint() {
     failed=1
   fi
 
-  .ci/tidy.py build/dev -j "$jobs" || failed=1
+  local which=()
+  [[ $tier == full ]] && which=(--all)
+  .ci/tidy.py build/dev -j "$jobs" "${which[@]}" || failed=1
   return "$failed"
+}
+
+# The release's tests carry the label "full".
+run_tests() {
+  local which=(--label-exclude '^full$')
+  [[ $tier == full ]] && which=()
+  ctest --preset "$1" --parallel "$jobs" "${which[@]}"
 }
 
 stage_unit() {
   build dev
-  ctest --preset dev --parallel "$jobs"
+  [[ $tier == commit ]] || cmake --build --preset dev --target test_plans_full
+  run_tests dev
 }
 
 stage_guest() {
@@ -80,14 +104,16 @@ stage_guest() {
   tests/guest/run.sh build/dev/bin
 }
 
+# Whole runs execute the plans that the dev build has made: planning is slow under a sanitizer.
 stage_asan() {
+  build dev
   build asan-ubsan
-  ctest --preset asan-ubsan --parallel "$jobs"
+  run_tests asan-ubsan
 }
 
 stage_tsan() {
   build tsan
-  ctest --preset tsan --parallel "$jobs"
+  run_tests tsan
 }
 
 stage_fuzz() {
@@ -98,6 +124,10 @@ stage_fuzz() {
 
 # --- run ---------------------------------------------------------------------------------------------
 
+if [[ ${1:-} == full ]]; then
+  tier=full
+  shift
+fi
 stages=("$@")
 ((${#stages[@]})) || stages=("${all_stages[@]}")
 for stage in "${stages[@]}"; do
@@ -108,6 +138,9 @@ for stage in "${stages[@]}"; do
 done
 
 .ci/setup.sh test || exit 1
+tree=$(tree_hash)
+mkdir -p build
+rm -f build/tested
 
 summary=()
 status=0
@@ -130,4 +163,11 @@ done
 
 section "summary"
 printf '%s\n' "${summary[@]}"
+if ((status == 0)) && [[ ${stages[*]} == "${all_stages[*]}" && -n $tree ]]; then
+  if [[ $(tree_hash) == "$tree" ]]; then
+    echo "$tree" >build/tested
+  else
+    echo "files have changed meanwhile: nobody can say which tree has passed"
+  fi
+fi
 exit "$status"

@@ -7,13 +7,13 @@
 set -euo pipefail
 
 build_packages=(
-  build-essential cmake ninja-build
+  build-essential cmake ninja-build ccache
   libeigen3-dev libode-dev liblcm-dev liblcm-bin
   libyaml-cpp-dev liburdfdom-dev libconsole-bridge-dev libcli11-dev nlohmann-json3-dev
 )
 test_packages=(
-  ccache libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev
-  clang-format clang-tidy cppcheck python3 python3-can python3-serial iproute2
+  libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev
+  clang-format clang-tidy cppcheck git python3 python3-can python3-serial iproute2
   can-utils qemu-system-x86 busybox-static cpio
 )
 fuzz_packages=(clang)

@@ -3,8 +3,9 @@
 #   tenon_library(NAME [EXCEPT FOLDER...] [PUBLIC DEP...] [PRIVATE DEP...])
 #   tenon_main(NAME SOURCE [DEP...])
 #   tenon_lcm_types(NAME)
-#   tenon_test(AREA [SERIAL|UNLISTED])
+#   tenon_test(AREA [SERIAL|UNLISTED] [PLANS] [EXECUTABLES MAIN...] [FULL FILTER...])
 #   tenon_test_program(NAME [DEP...])     for benchmarks and fuzzers
+#   tenon_plan(NAME TASK [START NAME] [CELL FILE] [FULL])
 #   tenon_check_house()
 #
 # A dependency that is not in the table below stops the configure step, whether it is declared with
@@ -13,28 +14,61 @@
 # ---------------------------------------------------------------------------------------------
 # Who may use whom. One row per target: everything that it may link, and therefore include.
 # ---------------------------------------------------------------------------------------------
-set(TENON_LIBRARIES shared shared_config lcmtypes planner executor hw sim)
+set(TENON_LIBRARIES shared shared_config lcmtypes
+    planner planner_belief planner_search planner_judge planner_report
+    executor executor_states executor_record executor_motion executor_sensing executor_dry_run
+    executor_loop executor_identification executor_telemetry
+    hw_can hw_canopen hw_cia402 hw_arm hw_load
+    sim_physics sim_cell sim_evaluation sim_evaluation_chain)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
 set(TENON_MAY_USE_shared_config shared yaml-cpp urdfdom::urdfdom_model
                                 console_bridge::console_bridge nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
-set(TENON_MAY_USE_planner       shared Threads::Threads nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_executor      shared lcmtypes LCM::lcm Threads::Threads
-                                nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_hw            shared Threads::Threads nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_sim           shared ODE::ODE Threads::Threads nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_planner       shared planner_belief planner_search planner_judge)
+set(TENON_MAY_USE_planner_belief shared Threads::Threads)
+set(TENON_MAY_USE_planner_search shared planner_belief)
+set(TENON_MAY_USE_planner_judge  shared planner_belief)
+set(TENON_MAY_USE_planner_report shared planner planner_belief planner_judge
+                                 nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_executor                shared executor_motion)
+set(TENON_MAY_USE_executor_states         shared)
+set(TENON_MAY_USE_executor_record         shared executor_states)
+set(TENON_MAY_USE_executor_motion         shared executor_states)
+set(TENON_MAY_USE_executor_sensing        shared executor_states)
+set(TENON_MAY_USE_executor_dry_run        shared executor_motion nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_executor_loop           shared executor_states executor_record executor_motion
+                                          executor_sensing executor_dry_run)
+set(TENON_MAY_USE_executor_identification shared executor_states executor_record executor_motion
+                                          executor_sensing executor_loop)
+# Message types and LCM are telemetry's alone.
+set(TENON_MAY_USE_executor_telemetry      shared executor_states executor_record executor_motion
+                                          executor_loop executor_identification lcmtypes LCM::lcm
+                                          Threads::Threads nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_hw_can        shared)
+set(TENON_MAY_USE_hw_canopen    shared)
+set(TENON_MAY_USE_hw_cia402     shared)
+set(TENON_MAY_USE_hw_arm        shared hw_canopen hw_cia402)
+set(TENON_MAY_USE_hw_load       shared hw_arm)
+set(TENON_MAY_USE_sim_physics    shared ODE::ODE)
+# The arm's links and joints are bodies of the same engine.
+set(TENON_MAY_USE_sim_cell       shared sim_physics ODE::ODE nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_sim_evaluation shared sim_cell Threads::Threads nlohmann_json::nlohmann_json)
+# The evaluation runs executor and virtual arm in lockstep inside one process.
+set(TENON_MAY_USE_sim_evaluation_chain shared sim_evaluation sim_cell
+                                       executor_dry_run executor_loop executor_telemetry hw_arm)
 
 # The mains compose. What is common to all of them:
 set(TENON_MAY_USE_any_main      shared Threads::Threads CLI11::CLI11 nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_tenon-plan     planner sim shared_config)
-set(TENON_MAY_USE_tenon-inspect  planner sim shared_config)
-set(TENON_MAY_USE_tenon-exec     executor hw shared_config)
-set(TENON_MAY_USE_tenon-monitor  executor lcmtypes shared_config LCM::lcm)
-set(TENON_MAY_USE_tenon-sim      sim hw shared_config)
-# The evaluation runs executor and virtual arm in lockstep inside one process.
-set(TENON_MAY_USE_tenon-evaluate sim executor hw shared_config)
-set(TENON_MAY_USE_tenon-can      hw shared_config)
+set(TENON_MAY_USE_tenon-plan     planner planner_report sim_physics shared_config)
+set(TENON_MAY_USE_tenon-inspect  planner planner_report sim_physics shared_config)
+set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
+                                 executor_loop executor_telemetry hw_can hw_arm hw_load shared_config)
+set(TENON_MAY_USE_tenon-monitor  executor_states executor_telemetry
+                                 lcmtypes shared_config LCM::lcm)
+set(TENON_MAY_USE_tenon-sim      sim_cell hw_can shared_config)
+set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)
+set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 shared_config)
 
 # Everything under tests/ may use any library, and never a main.
 set(TENON_MAY_USE_tests ${TENON_LIBRARIES} test_support Eigen3::Eigen yaml-cpp ODE::ODE LCM::lcm
@@ -124,6 +158,20 @@ function(tenon_main name source)
   add_executable(${name} ${found})
   set_target_properties(${name} PROPERTIES TENON_ROW ${name})
   tenon_check_dependencies(${name} ${ARGN})
+  # Its parts have headers beside them, which are reached like all others, and by this main alone.
+  string(REGEX REPLACE "\\.cpp$" ".h" pattern ${source})
+  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
+       ${CMAKE_CURRENT_SOURCE_DIR}/${pattern})
+  set(root ${PROJECT_BINARY_DIR}/roots/${name})
+  file(REMOVE_RECURSE ${root})
+  foreach(header IN LISTS headers)
+    get_filename_component(folder ${header} DIRECTORY)
+    file(MAKE_DIRECTORY ${root}/${folder})
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${header} ${root}/${header} SYMBOLIC)
+  endforeach()
+  if(headers)
+    target_include_directories(${name} PRIVATE ${root})
+  endif()
   target_compile_definitions(${name} PRIVATE TENON_VERSION="${PROJECT_VERSION}")
   target_link_libraries(${name} PRIVATE ${ARGN} CLI11::CLI11 nlohmann_json::nlohmann_json)
   set_property(GLOBAL APPEND PROPERTY TENON_MAINS ${name})
@@ -163,49 +211,107 @@ function(tenon_lcm_types name)
   target_link_libraries(${name} INTERFACE LCM::headers)
 endfunction()
 
-# What every program under tests/ gets: all libraries, and the places of things as definitions:
-#   TENON_SOURCE_DIR        the repository
-#   TENON_BIN_DIR           the folder of the executables
-#   TENON_PLAN_EXE, ...     each executable; the test program is built after it
+# What every program under tests/ gets: all libraries, and its own folder as an include root. Where
+# things are on this machine, tests ask tests/support/places.h.
 function(tenon_test_program name)
   set_target_properties(${name} PROPERTIES TENON_ROW tests)
   tenon_check_dependencies(${name} ${ARGN})
   target_include_directories(${name} PRIVATE ${PROJECT_BINARY_DIR}/roots/tests)
-  target_compile_definitions(${name} PRIVATE
-    TENON_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-    TENON_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}"
-    TENON_VERSION="${PROJECT_VERSION}")
-  get_property(mains GLOBAL PROPERTY TENON_MAINS)
-  foreach(main IN LISTS mains)
-    string(TOUPPER ${main} symbol)
-    string(REPLACE "-" "_" symbol ${symbol})
-    target_compile_definitions(${name} PRIVATE ${symbol}_EXE="$<TARGET_FILE:${main}>")
-    add_dependencies(${name} ${main})
-  endforeach()
   target_link_libraries(${name} PRIVATE ${TENON_LIBRARIES} ${ARGN})
+  if(TARGET test_support AND NOT name STREQUAL test_support AND "${ARGN}" MATCHES "GTest")
+    target_precompile_headers(${name} REUSE_FROM test_support)
+  endif()
 endfunction()
 
 # The GoogleTest binary tests_AREA out of every .cpp below the folder AREA; each test is registered as
-# AREA.Suite.Name under the label AREA.
+# AREA.Suite.Name under the label AREA. Does nothing where TENON_TEST_AREAS names other areas only.
 # SERIAL: its tests run one at a time, because they run in real time.
 # UNLISTED: built but not registered, because its tests need another machine (tests/guest).
+# EXECUTABLES: what its tests run, and is therefore built before it.
+# PLANS: its tests read plans of tests/plans, which are therefore made before it is linked.
+# FULL: GoogleTest filters of the tests that only a release needs. They get the label full in place of
+# the area's.
 function(tenon_test area)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL;UNLISTED" "" "")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL;UNLISTED;PLANS" "" "EXECUTABLES;FULL")
+  tenon_has_area(${area} wanted)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${area}/*.cpp)
-  if(NOT sources)
+  if(NOT wanted OR NOT sources)
     return()
   endif()
   add_executable(tests_${area} ${sources})
   tenon_test_program(tests_${area} test_support ODE::ODE LCM::lcm yaml-cpp Threads::Threads
     nlohmann_json::nlohmann_json GTest::gtest_main GTest::gmock)
+  if(arg_EXECUTABLES)
+    add_dependencies(tests_${area} ${arg_EXECUTABLES})
+  endif()
+  if(arg_PLANS)
+    get_property(plans GLOBAL PROPERTY TENON_PLANS)
+    set_property(TARGET tests_${area} APPEND PROPERTY LINK_DEPENDS ${plans})
+  endif()
   if(arg_UNLISTED)
     return()
   endif()
-  gtest_discover_tests(tests_${area}
-    TEST_PREFIX "${area}."
-    DISCOVERY_MODE PRE_TEST
-    DISCOVERY_TIMEOUT 60
+  set(common TEST_PREFIX "${area}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+  if(arg_FULL)
+    list(JOIN arg_FULL ":" full)
+    gtest_discover_tests(tests_${area} ${common} TEST_FILTER "${full}"
+      TEST_LIST tests_${area}_full
+      PROPERTIES LABELS full TIMEOUT 3600 RUN_SERIAL ${arg_SERIAL})
+    set(rest TEST_FILTER "-${full}")
+  endif()
+  gtest_discover_tests(tests_${area} ${common} ${rest}
     PROPERTIES LABELS ${area} TIMEOUT 600 RUN_SERIAL ${arg_SERIAL})
+endfunction()
+
+# Whether this build is to have the tests of an area.
+function(tenon_has_area area result)
+  if(TENON_TEST_AREAS STREQUAL "all" OR area IN_LIST TENON_TEST_AREAS)
+    set(${result} TRUE PARENT_SCOPE)
+  else()
+    set(${result} FALSE PARENT_SCOPE)
+  endif()
+endfunction()
+
+# The plan NAME.tnp that tests share, made by tenon-plan, and again whenever planner, task or cell has
+# changed. TASK and CELL are files of the repository, START is a start of the task (its first).
+# FULL: only tests with the label full read it, so it is made by the target test_plans_full alone.
+# A sanitized planner is slow, so a build with sanitizers takes the plan from TENON_PLANS_FROM.
+function(tenon_plan name task)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "FULL" "START;CELL" "")
+  if(TENON_SANITIZERS)
+    if(NOT arg_FULL AND NOT EXISTS ${TENON_PLANS_FROM}/${name}.tnp)
+      message(FATAL_ERROR "Tenon: ${TENON_PLANS_FROM}/${name}.tnp is missing; make it with "
+                          "'cmake --preset dev && cmake --build --preset dev --target test_plans'.")
+    endif()
+    return()
+  endif()
+  set(plan ${PROJECT_BINARY_DIR}/plans/${name}.tnp)
+  set(options)
+  set(inputs ${PROJECT_SOURCE_DIR}/${task})
+  if(arg_START)
+    list(APPEND options --start ${arg_START})
+  endif()
+  if(arg_CELL)
+    list(APPEND options --cell ${PROJECT_SOURCE_DIR}/${arg_CELL})
+    get_filename_component(folder ${PROJECT_SOURCE_DIR}/${arg_CELL} DIRECTORY)
+    file(GLOB robots CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/hw/robots/*/* ${folder}/*.yaml)
+    list(APPEND inputs ${robots})
+  endif()
+  # However busy the machine is: the wall limit is for people, and no plan may depend on it.
+  add_custom_command(
+    OUTPUT ${plan}
+    COMMAND tenon-plan ${PROJECT_SOURCE_DIR}/${task} ${options} --threads 1 --time-limit 86400
+            --output ${plan}.new --json ${PROJECT_BINARY_DIR}/plans/${name}.json > ${name}.txt
+    COMMAND ${CMAKE_COMMAND} -E rename ${plan}.new ${plan}
+    DEPENDS tenon-plan ${inputs}
+    WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/plans
+    COMMENT "Planning ${name}"
+    VERBATIM)
+  if(arg_FULL)
+    set_property(GLOBAL APPEND PROPERTY TENON_PLANS_FULL ${plan})
+  else()
+    set_property(GLOBAL APPEND PROPERTY TENON_PLANS ${plan})
+  endif()
 endfunction()
 
 # ---------------------------------------------------------------------------------------------

@@ -29,11 +29,17 @@ if(TENON_SANITIZERS)
   add_compile_options(-Wno-maybe-uninitialized)
 endif()
 
+# ccache, where there is one: .ci/setup.sh installs it before the first configure. Paths below the
+# repository are relative to it and debug information has none of its own, so that what one clone has
+# compiled serves every other; the sloppiness is what precompiled headers need. env(1) is there because
+# settings on ccache's own command line came after Debian 12's version.
 find_program(CCACHE ccache)
 mark_as_advanced(CCACHE)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+      CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
+add_compile_options(-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=)
 
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)

@@ -10,8 +10,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <string>
 
-#include "executor/ending.h"
-#include "executor/telemetry/cycle_record.h"
+#include "executor/states/state_machine.h"
 #include "executor/telemetry/lcm_url.h"
 #include "executor/telemetry/telemetry.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
@@ -19,6 +18,7 @@
 #include "lcmtypes/tenon/step_event_t.hpp"
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
+#include "shared/motion/contact_signature.h"
 #include "shared/motion/outcome.h"
 
 namespace tenon::executor {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/plan_builder.h"
+#include "planner/judge/plan_draft.h"
 #include "shared/cell/cell.h"
 #include "shared/task/task.h"
 

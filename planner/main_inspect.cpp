@@ -9,22 +9,20 @@
 #include <vector>
 
 #include "planner/cell_fit.h"
-#include "planner/html_report.h"
-#include "planner/inspection.h"
-#include "planner/summary.h"
+#include "planner/report/html_report.h"
+#include "planner/report/inspection.h"
+#include "planner/report/summary.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
-#include "sim/rollout/ode_rollout.h"
+#include "sim/physics/rollout/ode_rollout.h"
 
 namespace {
 
 using namespace tenon;
 
 constexpr std::size_t kReportDraws = 200;
-constexpr unsigned kDrawsMin = 200;         // as tenon-plan has it
-constexpr std::size_t kDrawsMax = 100'000;  // likewise
 
 struct Arguments {
   std::string plan;
@@ -102,9 +100,9 @@ void validate_again(const Plan& plan, const Task& task, planner::RolloutPool& po
 }
 
 Verdict recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
-  if (plan.draws > kDrawsMax) {
+  if (plan.draws > planner::kDrawsMax) {
     throw InputError(a.plan + ": draws = " + std::to_string(plan.draws) + ", must be at most " +
-                     std::to_string(kDrawsMax) + " to be repeated");
+                     std::to_string(planner::kDrawsMax) + " to be repeated");
   }
   const auto [task, assumptions, changes] = task_of(plan, a.recertify, a.cell);
   const auto same = [](double x, double y) { return std::abs(x - y) <= 1e-6 * std::abs(y); };
@@ -139,10 +137,10 @@ Verdict recertify(const Arguments& a, const Plan& plan, const std::vector<std::u
   if (plan.method == PlanMethod::kMha && !plan.check_envelopes) {
     verdict.add(false, "certified", "the plan checks no envelopes");
   }
-  if (plan.draws < kDrawsMin) {
-    verdict.add(
-        false, "validated",
-        format("the plan is judged by %u draws, at least %u are wanted", plan.draws, kDrawsMin));
+  if (plan.draws < planner::kDrawsMin) {
+    verdict.add(false, "validated",
+                format("the plan is judged by %u draws, at least %zu are wanted", plan.draws,
+                       planner::kDrawsMin));
   }
   validate_again(plan, task, pool, verdict);
   return verdict;

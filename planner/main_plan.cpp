@@ -11,12 +11,13 @@
 
 #include "planner/cell_fit.h"
 #include "planner/planner.h"
-#include "planner/summary.h"
+#include "planner/report/summary.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
-#include "sim/rollout/ode_rollout.h"
+#include "shared/task/find_start.h"
+#include "sim/physics/rollout/ode_rollout.h"
 
 namespace {
 
@@ -30,7 +31,7 @@ struct Arguments {
   std::string output;
   std::string json;
   std::size_t threads = 1;
-  std::size_t draws = 200;
+  std::size_t draws = planner::kDrawsMin;
   std::optional<double> time_limit_s;
   bool verbose = false;
 };
@@ -53,7 +54,7 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--time-limit", a.time_limit_s,
                  "Seconds after which no path is searched for any more (the task's)");
   app.add_option("--draws", a.draws, "Random starts of the validation")
-      ->check(CLI::Range(200, 100000))
+      ->check(CLI::Range(planner::kDrawsMin, planner::kDrawsMax))
       ->capture_default_str();
   app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
   app.add_option("-o,--output", a.output, "Plan file to write")->required();
@@ -68,12 +69,9 @@ PlanMethod chosen_method(const std::string& name) {
 
 const Start& chosen_start(const Task& task, const std::string& name) {
   if (name.empty() && !task.starts.empty()) return task.starts.front();
-  std::string names;
-  for (const Start& start : task.starts) {
-    if (start.name == name) return start;
-    names += (names.empty() ? "" : ", ") + start.name;
-  }
-  throw InputError("--start " + name + ": task '" + task.name + "' has only the starts " + names);
+  if (const Start* start = find_start(task, name)) return *start;
+  throw InputError("--start " + name + ": task '" + task.name + "' has only the starts " +
+                   start_names(task));
 }
 
 int run(const Arguments& a) {
@@ -92,8 +90,7 @@ int run(const Arguments& a) {
   planner::PlannerOptions options;
   options.method = chosen_method(a.method);
   options.threads = a.threads;
-  options.validation.draws = a.draws;
-  options.assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
+  options.draws = a.draws;
   if (a.verbose) {
     options.progress = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }

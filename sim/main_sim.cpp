@@ -20,12 +20,13 @@
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
-#include "sim/devices/robot_devices.h"
-#include "sim/faults/fault_spec.h"
-#include "sim/faults/faulty_bus.h"
-#include "sim/virtual_arm/environment_offset.h"
-#include "sim/virtual_arm/virtual_cell.h"
-#include "sim/virtual_arm/world_draw.h"
+#include "shared/task/find_start.h"
+#include "sim/cell/devices/robot_devices.h"
+#include "sim/cell/faults/fault_spec.h"
+#include "sim/cell/faults/faulty_bus.h"
+#include "sim/cell/virtual_arm/environment_offset.h"
+#include "sim/cell/virtual_arm/virtual_cell.h"
+#include "sim/cell/virtual_arm/world_draw.h"
 
 namespace {
 
@@ -133,7 +134,7 @@ int simulate(const CommandLine& line) {
   options.seed = line.seed.value_or(0);
   if (!line.offset.empty()) options.offset = sim::parse_offset(line.offset, task.coordinates);
   if (line.seed) {
-    const Start& start = sim::find_start(task, line.start);
+    const Start& start = start_or_first(task, line.start);
     options.offset = sim::draw_offset(start, task.coordinates, *line.seed);
     std::printf("seed %llu\n", static_cast<unsigned long long>(*line.seed));
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "executor/joint_difference.h"
+#include "executor/motion/joint_difference.h"
 
 namespace tenon::executor {
 

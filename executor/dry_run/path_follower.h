@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "executor/tool_kinematics.h"
+#include "executor/motion/tool_kinematics.h"
 #include "shared/math/pose.h"
 
 namespace tenon::executor {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "executor/joint_difference.h"
+#include "executor/motion/joint_difference.h"
 #include "shared/base/text.h"
 
 namespace tenon::executor {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "executor/tool_kinematics.h"
+#include "executor/motion/tool_kinematics.h"
 #include "shared/cell/cell.h"
 
 namespace tenon::executor {

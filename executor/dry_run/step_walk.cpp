@@ -5,8 +5,8 @@
 #include <map>
 
 #include "executor/dry_run/start_positions.h"
-#include "executor/joint_difference.h"
-#include "executor/joint_stop.h"
+#include "executor/motion/joint_difference.h"
+#include "executor/motion/joint_stop.h"
 #include "shared/base/text.h"
 #include "shared/motion/path_limits.h"
 

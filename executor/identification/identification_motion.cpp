@@ -2,30 +2,23 @@
 
 namespace tenon::executor {
 
-void IdentificationMotion::on_enter(State state) {
-  switch (state) {
-    case State::kApproaching:
-      return process_event(Event::kAtStart);
-    case State::kRunning:
-      return begin();
-    case State::kStopping:
-    case State::kHolding:
-      return joints().stop();
-    case State::kWaiting:
-    case State::kTaring:
-    case State::kQuickStopping:
-    case State::kDisabling:
-    case State::kFinished:
-      return;
-  }
+ControlTask::Turn IdentificationMotion::on_enter(State state) {
+  if (state == State::kApproaching) return Event::kAtStart;
+  if (state == State::kRunning) begin();
+  if (state == State::kStopping || state == State::kHolding) joints().stop();
+  return {};
 }
 
-void IdentificationMotion::ramp_down() {
-  if (joints().at_rest()) process_event(Event::kAtRest);
+ControlTask::Turn IdentificationMotion::ramp_down() {
+  return joints().at_rest() ? Turn(Event::kAtRest) : Turn();
 }
 
-Vector6 IdentificationMotion::move() {
+std::optional<Ending> IdentificationMotion::command_joints() {
   if (state() != State::kRunning) joints().ramp();
+  return std::nullopt;
+}
+
+Vector6 IdentificationMotion::complete_motion() {
   return kinematics().twist(joints().position(), joints().velocity());
 }
 

@@ -5,7 +5,9 @@
 //
 // Real-time but for the constructor: no allocation, no lock, no throw. One thread.
 
-#include "executor/control_task.h"
+#include <optional>
+
+#include "executor/loop/control_task.h"
 #include "shared/cell/cell.h"
 
 namespace tenon::executor {
@@ -19,17 +21,13 @@ class IdentificationMotion : public ControlTask {
   /// The sensor is tared and the joints rest; run() comes next.
   virtual void begin() = 0;
 
-  /// Joints or tool that cannot be followed end it.
-  template <typename Target>
-  void follow(const Target& target) {
-    if (const auto refused = joints().follow(target)) end(*refused);
-  }
-
  private:
-  void on_enter(State state) final;
-  void approach() final {}
-  void ramp_down() final;
-  [[nodiscard]] Vector6 move() final;
+  [[nodiscard]] Turn on_enter(State state) final;
+  [[nodiscard]] Turn approach() final { return {}; }
+  [[nodiscard]] Turn ramp_down() final;
+  /// run() has commanded them; once it is over they ramp down.
+  [[nodiscard]] std::optional<Ending> command_joints() final;
+  [[nodiscard]] Vector6 complete_motion() final;
   void write_motion(CycleRecord& record) final;
 };
 

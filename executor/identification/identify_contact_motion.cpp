@@ -24,14 +24,14 @@ double IdentifyContactMotion::force_N() const {
   return -parameters_.sign * supervision().wrench()[parameters_.axis];
 }
 
-void IdentifyContactMotion::advance(double speed_mps) {
+std::optional<Ending> IdentifyContactMotion::advance(double speed_mps) {
   depth_m_ += speed_mps * cycle_s();
   Vector6 way = Vector6::Zero();
   way[parameters_.axis] = parameters_.sign * depth_m_;
-  follow(displaced(first_, way));
+  return joints().follow(displaced(first_, way));
 }
 
-void IdentifyContactMotion::run(const ArmFeedback& /*feedback*/) {
+ControlTask::Turn IdentifyContactMotion::run(const ArmFeedback& /*feedback*/) {
   switch (phase_) {
     case Phase::kApproaching:
       return approach_contact();
@@ -42,33 +42,36 @@ void IdentifyContactMotion::run(const ArmFeedback& /*feedback*/) {
     case Phase::kRetreating:
       return retreat();
   }
+  return {};
 }
 
-void IdentifyContactMotion::approach_contact() {
-  advance(parameters_.approach_mps);
+ControlTask::Turn IdentifyContactMotion::approach_contact() {
+  if (const auto refused = advance(parameters_.approach_mps)) return *refused;
   if (supervision().wrench_usable() && force_N() > parameters_.force_low_N) {
     met_ = true;
     phase_ = Phase::kPressing;
   } else if (depth_m_ > parameters_.reach_m) {
     start_retreat();
   }
+  return {};
 }
 
 // Out until the force is low, then in until it is high: the way between the two is the first guess.
-void IdentifyContactMotion::press() {
+ControlTask::Turn IdentifyContactMotion::press() {
   if (low_m_ < 0.0) {
-    advance(-parameters_.press_mps);
+    if (const auto refused = advance(-parameters_.press_mps)) return *refused;
     if (force_N() < parameters_.force_low_N) low_m_ = depth_m_;
-    return;
+    return {};
   }
-  advance(parameters_.press_mps);
-  if (force_N() < parameters_.force_high_N) return;
+  if (const auto refused = advance(parameters_.press_mps)) return *refused;
+  if (force_N() < parameters_.force_high_N) return {};
   wave_mps_ = std::max(depth_m_ - low_m_, 0.0) / parameters_.half_wave_s;
   direction_ = -1.0;
   phase_ = Phase::kWaving;
+  return {};
 }
 
-void IdentifyContactMotion::wave() {
+ControlTask::Turn IdentifyContactMotion::wave() {
   const bool turn =
       direction_ > 0.0 ? force_N() > parameters_.force_high_N : force_N() < parameters_.force_low_N;
   if (turn) {
@@ -76,10 +79,12 @@ void IdentifyContactMotion::wave() {
     ++half_waves_;
   }
   if (half_waves_ >= parameters_.half_waves || samples_.size() == samples_.capacity()) {
-    return start_retreat();
+    start_retreat();
+    return {};
   }
-  advance(direction_ * wave_mps_);
+  if (const auto refused = advance(direction_ * wave_mps_)) return *refused;
   samples_.push_back({depth_m_, force_N(), supervision().wrench_usable()});
+  return {};
 }
 
 void IdentifyContactMotion::start_retreat() {
@@ -94,15 +99,15 @@ void IdentifyContactMotion::start_retreat() {
   phase_ = Phase::kRetreating;
 }
 
-void IdentifyContactMotion::retreat() {
+ControlTask::Turn IdentifyContactMotion::retreat() {
   retreat_s_ += cycle_s();
   depth_m_ = retreat_from_m_ - back_.at(retreat_s_).position;
-  advance(0.0);
-  if (retreat_s_ < back_.duration_s()) return;
-  if (met_) return end({.reason = EndReason::kMeasured});
-  end({.reason = EndReason::kNothingMet,
-       .index = parameters_.axis,
-       .value = parameters_.sign * parameters_.reach_m});
+  if (const auto refused = advance(0.0)) return *refused;
+  if (retreat_s_ < back_.duration_s()) return {};
+  if (met_) return Ending{.reason = EndReason::kMeasured};
+  return Ending{.reason = EndReason::kNothingMet,
+                .index = parameters_.axis,
+                .value = parameters_.sign * parameters_.reach_m};
 }
 
 }  // namespace tenon::executor

@@ -7,6 +7,7 @@
 //   force   ............................/\../\/\/\/\/\/\..............   kForceHigh_N
 //   phase          approach      first press     wave        retreat
 
+#include <optional>
 #include <vector>
 
 #include "executor/identification/identification_motion.h"
@@ -45,13 +46,14 @@ class IdentifyContactMotion : public IdentificationMotion {
 
  private:
   void begin() override;
-  void run(const ArmFeedback& feedback) override;
-  void approach_contact();
-  void press();
-  void wave();
+  [[nodiscard]] Turn run(const ArmFeedback& feedback) override;
+  [[nodiscard]] Turn approach_contact();
+  [[nodiscard]] Turn press();
+  [[nodiscard]] Turn wave();
   void start_retreat();
-  void retreat();
-  void advance(double speed_mps);
+  [[nodiscard]] Turn retreat();
+  /// @return why the joints cannot follow
+  [[nodiscard]] std::optional<Ending> advance(double speed_mps);
   /// Of the contact, positive against the way.
   [[nodiscard]] double force_N() const;
 

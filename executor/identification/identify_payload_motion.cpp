@@ -55,31 +55,30 @@ void IdentifyPayloadMotion::go_on() {
   reading_ = SensorTare(SensorTare::parameters_for(cell().robot.sensor, parameters_.samples));
 }
 
-void IdentifyPayloadMotion::run(const ArmFeedback& feedback) {
+ControlTask::Turn IdentifyPayloadMotion::run(const ArmFeedback& feedback) {
   since_s_ += cycle_s();
-  follow(move_.at(since_s_));
-  if (since_s_ < move_.duration_s() + parameters_.settle_s) return;
-  if (!measure(feedback)) return;
-  if (++pose_ < poses_.size()) return go_on();
-  end({.reason = EndReason::kMeasured});
-}
-
-// True once the reading of this pose is complete.
-bool IdentifyPayloadMotion::measure(const ArmFeedback& feedback) {
-  if (!supervision().wrench_usable()) return false;
+  if (const auto refused = joints().follow(move_.at(since_s_))) return *refused;
+  if (since_s_ < move_.duration_s() + parameters_.settle_s) return {};
+  if (!supervision().wrench_usable()) return {};
   switch (reading_.add(feedback.wrench)) {
     case SensorTare::Status::kGathering:
-      return false;
+      return {};
+    case SensorTare::Status::kUnsteady:
+      return unsteady(reading_);
     case SensorTare::Status::kDone:
       break;
-    case SensorTare::Status::kUnsteady:
-      end(unsteady(reading_));
-      return false;
   }
+  readings_.push_back(reading());
+  if (++pose_ == poses_.size()) return Ending{.reason = EndReason::kMeasured};
+  go_on();
+  return {};
+}
+
+// Of this pose, once it is complete.
+RestReading IdentifyPayloadMotion::reading() const {
   const Eigen::Quaterniond R_BS =
       kinematics().chain().flange(supervision().joints()).orientation * cell().X_FS.orientation;
-  readings_.push_back({R_BS.conjugate() * Vector3(-kGravity_mps2 * cell().up_B), reading_.mean()});
-  return true;
+  return {R_BS.conjugate() * Vector3(-kGravity_mps2 * cell().up_B), reading_.mean()};
 }
 
 }  // namespace tenon::executor

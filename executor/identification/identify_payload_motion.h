@@ -8,8 +8,8 @@
 
 #include "executor/identification/identification_motion.h"
 #include "executor/identification/identify_payload.h"
-#include "executor/joint_move.h"
-#include "executor/sensor_tare.h"
+#include "executor/motion/joint_move.h"
+#include "executor/sensing/sensor_tare.h"
 
 namespace tenon::executor {
 
@@ -29,9 +29,9 @@ class IdentifyPayloadMotion : public IdentificationMotion {
 
  private:
   void begin() override;
-  void run(const ArmFeedback& feedback) override;
+  [[nodiscard]] Turn run(const ArmFeedback& feedback) override;
   void go_on();
-  [[nodiscard]] bool measure(const ArmFeedback& feedback);
+  [[nodiscard]] RestReading reading() const;
 
   Parameters parameters_;
   std::vector<std::size_t> turning_;  ///< joints, outermost first

@@ -1,6 +1,6 @@
 #include "executor/telemetry/recorder.h"
 
-#include "executor/monotonic_clock.h"
+#include "executor/loop/monotonic_clock.h"
 
 namespace tenon::executor {
 namespace {

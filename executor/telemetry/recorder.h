@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "executor/cycle_runner.h"
+#include "executor/record/cycle_sink.h"
 #include "shared/base/spsc_ring.h"
 
 namespace tenon::executor {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "executor/controller.h"
-#include "executor/cycle_runner.h"
 #include "executor/identification/finding.h"
+#include "executor/loop/controller.h"
+#include "executor/loop/cycle_runner.h"
 
 namespace tenon::executor {
 

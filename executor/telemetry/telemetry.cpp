@@ -4,7 +4,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <utility>
 
-#include "executor/monotonic_clock.h"
+#include "executor/loop/monotonic_clock.h"
 #include "executor/telemetry/lcm_url.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"

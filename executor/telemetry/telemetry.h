@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "executor/plan_runner.h"
+#include "executor/motion/plan_runner.h"
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
 

@@ -15,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-#include "executor/plan_runner.h"
+#include "executor/motion/plan_runner.h"
 #include "executor/telemetry/recorder.h"
 
 namespace tenon::executor {

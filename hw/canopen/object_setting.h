@@ -5,6 +5,11 @@
 
 namespace tenon::hw::canopen {
 
+/// index << 8 | sub, as ArmFault carries it.
+[[nodiscard]] constexpr std::uint32_t object_of(std::uint16_t index, std::uint8_t sub = 0) {
+  return static_cast<std::uint32_t>(index) << 8 | sub;
+}
+
 struct ObjectSetting {
   enum class Action : std::uint8_t {
     kWrite,          ///< write it, read it back and compare
@@ -22,10 +27,7 @@ struct ObjectSetting {
   std::uint32_t value = 0;
   std::uint32_t compare_mask = 0xFFFFFFFF;  ///< bits that have to agree
 
-  /// index << 8 | sub, as ArmFault carries it.
-  [[nodiscard]] constexpr std::uint32_t object() const {
-    return static_cast<std::uint32_t>(index) << 8 | sub;
-  }
+  [[nodiscard]] constexpr std::uint32_t object() const { return object_of(index, sub); }
   [[nodiscard]] constexpr bool matches(std::uint32_t found) const {
     const std::uint32_t size_mask = size_bytes >= 4 ? 0xFFFFFFFFu : (1u << (8u * size_bytes)) - 1u;
     return ((found ^ value) & compare_mask & size_mask) == 0;

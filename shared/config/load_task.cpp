@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "shared/base/fnv.h"
 #include "shared/base/text.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
@@ -246,11 +247,12 @@ void read_physics(const Value& value, Task& task) {
 /// Every move may run at contact speed throughout.
 void check_time_for_a_step(const Value& primitives, const Task& task) {
   const SpeedLimits& speeds = task.motion.speeds;
-  const double step_s =
-      std::max(task.step_m / speeds.contact_mps,
-               has(task.coordinates, 3) || has(task.coordinates, 4) || has(task.coordinates, 5)
-                   ? task.step_rad / speeds.contact_radps
-                   : 0.0);
+  double step_s = 0.0;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(task.coordinates, axis)) continue;
+    step_s = std::max(
+        step_s, axis < 3 ? task.step_m / speeds.contact_mps : task.step_rad / speeds.contact_radps);
+  }
   const double timeout_s = 1e-6 * task.motion.timeout_us;
   if (step_s <= timeout_s) return;
   primitives.refuse("a step takes " + format("%g", step_s) +
@@ -280,7 +282,7 @@ Task load_task(const std::filesystem::path& name) {
                  "primitives", "speeds", "contact", "compliance", "search", "physics", "variants"});
   Task task;
   task.name = read_name(map.at("name"), variant);
-  task.hash = config::fnv1a_64(variant ? text + "#" + *variant : text);
+  task.hash = fnv1a_64(variant ? text + "#" + *variant : text);
   task.coordinates = read_axes(map.at("coordinates"));
 
   std::set<std::string> shape_names;

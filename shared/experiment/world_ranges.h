@@ -1,7 +1,7 @@
 #pragma once
 // How far the world of an experiment may differ from what task and cell file say: what
-// sim/experiments/*.yaml hold. Plain data; sim/virtual_arm/world_draw.h draws from it. Planner and
-// executor never see it.
+// sim/experiments/*.yaml hold. Plain data; sim/cell/virtual_arm/world_draw.h draws from it. Planner
+// and executor never see it.
 
 #include <optional>
 #include <string>

@@ -42,4 +42,9 @@ struct Evaluation {
   }
 };
 
+/// A typing error in --by must not cost a thousand runs.
+/// @param count how many runs there will be
+/// @throws InputError where none of them falls in a bin
+void check_bins(const Evaluation& evaluation, std::size_t count);
+
 }  // namespace tenon::sim

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/virtual_arm/world_json.h"
+#include "sim/cell/virtual_arm/world_json.h"
 
 namespace tenon::sim {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "shared/experiment/world_ranges.h"
 #include "shared/task/task.h"
-#include "sim/virtual_arm/world_draw.h"
+#include "sim/cell/virtual_arm/world_draw.h"
 
 namespace tenon::sim {
 

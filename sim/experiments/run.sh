@@ -24,8 +24,9 @@
 # that were changed after a first look at 60 runs and less: the start of fig11 (6 became 7, for which planning
 # takes less time), and the range of the sensor noise (24 times became 6: taring refuses above 0.3 N).
 # Before their first run the tilt was narrowed, and sweep_clearance_tight.yaml, the peg at 0.5 mm and the peg's cell
-# were added; the number of runs of a sweep is what there was time for. The bins of --by were chosen to show
-# what had come out.
+# were added. All of it was run again after the planner had changed, with the same seeds and ranges. The
+# number of runs of a sweep is what there was time for. The bins of --by were chosen to show what had come
+# out.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 

@@ -5,13 +5,14 @@
 #include "shared/config/load.h"
 #include "shared/ports/rollout.h"
 #include "shared/task/task.h"
+#include "tests/support/places.h"
 
 namespace tenon::bench {
 
 enum class Move { kFree, kContact, kSlide };
 
 [[nodiscard]] inline const Task& box_task() {
-  static const Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml");
+  static const Task task = load_task(tests::in_tree("planner/tasks/box_on_table_2d.yaml"));
   return task;
 }
 

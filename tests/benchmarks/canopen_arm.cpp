@@ -2,7 +2,7 @@
 // what four nodes send, supervision, setpoints; and the same with 240 frames in the queue that are
 // not for it, near the 256 that one call takes in at most.
 
-#include "hw/canopen_arm.h"
+#include "hw/arm/canopen_arm.h"
 
 #include <benchmark/benchmark.h>
 

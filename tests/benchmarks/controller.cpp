@@ -1,13 +1,13 @@
 // What the executor computes in a cycle, without bus and devices: Controller::cycle() from waiting
 // for the drives over taring and a plan of two moves (touch a wall, slide along it) to the end.
 
-#include "executor/controller.h"
+#include "executor/loop/controller.h"
 
 #include <benchmark/benchmark.h>
 
 #include "tests/benchmarks/cost.h"
-#include "tests/executor/hand_made.h"
-#include "tests/executor/wall_arm.h"
+#include "tests/support/hand_made.h"
+#include "tests/support/wall_arm.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "sim/rollout/ode_rollout.h"
+#include "sim/physics/rollout/ode_rollout.h"
 #include "tests/benchmarks/box_moves.h"
 #include "tests/benchmarks/cost.h"
 

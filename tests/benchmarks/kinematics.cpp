@@ -6,6 +6,7 @@
 #include "shared/config/load.h"
 #include "shared/kinematics/serial_chain.h"
 #include "tests/benchmarks/cost.h"
+#include "tests/support/places.h"
 
 namespace {
 
@@ -13,9 +14,7 @@ using namespace tenon;
 
 constexpr JointVector kBent{0.3, -0.7, 1.1, 0.4, 0.9, -0.2};
 
-SerialChain csp6() {
-  return SerialChain(load_robot(TENON_SOURCE_DIR "/hw/robots/csp6/robot.yaml"));
-}
+SerialChain csp6() { return SerialChain(load_robot(tests::in_tree("hw/robots/csp6/robot.yaml"))); }
 
 void flange(benchmark::State& state) {
   const SerialChain chain = csp6();

@@ -5,7 +5,7 @@
 // itself), bus (frames in virtual time), executor (controller and CANopen master). Reading the
 // clock is in them, some 25 ns each.
 
-#include "sim/lockstep/lockstep.h"
+#include "sim/cell/lockstep/lockstep.h"
 
 #include <benchmark/benchmark.h>
 
@@ -13,21 +13,16 @@
 #include <chrono>
 #include <cstdint>
 #include <ctime>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "executor/controller.h"
-#include "executor/cycle_runner.h"
-#include "hw/canopen_arm.h"
-#include "hw/describe_fault.h"
-#include "planner/cell_fit.h"
-#include "planner/planner.h"
-#include "shared/config/load.h"
-#include "sim/lockstep/virtual_link.h"
-#include "sim/rollout/ode_rollout.h"
-#include "sim/virtual_arm/virtual_cell.h"
-#include "tests/chain/planned.h"
+#include "executor/loop/controller.h"
+#include "executor/loop/cycle_runner.h"
+#include "hw/arm/canopen_arm.h"
+#include "hw/arm/describe_fault.h"
+#include "sim/cell/lockstep/virtual_link.h"
+#include "sim/cell/virtual_arm/virtual_cell.h"
+#include "tests/support/planned.h"
 
 namespace {
 
@@ -161,20 +156,6 @@ struct Spent {
   }
 };
 
-/// As `tenon-plan --cell` makes it.
-Plan plan_for(const Cell& cell) {
-  const planner::CellFit fit = planner::fit_to_cell(tests::box_task(), cell);
-  planner::PlannerOptions options;
-  options.threads = 1;
-  options.assumptions = fit.assumptions;
-  const sim::OdeRollout rollout(fit.task);
-  const auto now_s = [] { return 1e-9 * static_cast<double>(clock_ns()); };
-  const auto report =
-      planner::make_plan(fit.task, tests::box_start(kStart), rollout, options, now_s);
-  if (!report.plan) throw std::runtime_error(report.reason);
-  return *report.plan;
-}
-
 /// Why the plan did not come to its end; empty: it did.
 std::string run_once(const Cell& cell, const Plan& plan, Spent& spent) {
   Shares shares;
@@ -215,8 +196,8 @@ std::string run_once(const Cell& cell, const Plan& plan, Spent& spent) {
 }
 
 void lockstep(benchmark::State& state, const std::string& cell_name) {
-  const Cell cell = load_cell(TENON_SOURCE_DIR "/hw/cells/" + cell_name + ".yaml");
-  const Plan plan = plan_for(cell);
+  const Cell cell = tests::shipped_cell(cell_name);
+  const Plan plan = tests::planned_box(cell, kStart).plan;
   Spent spent;
   for (auto _ : state) {
     const std::string failure = run_once(cell, plan, spent);

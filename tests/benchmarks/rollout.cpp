@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "sim/rollout/ode_rollout.h"
+#include "sim/physics/rollout/ode_rollout.h"
 #include "tests/benchmarks/box_moves.h"
 #include "tests/benchmarks/cost.h"
 

@@ -10,14 +10,14 @@
 #include <memory>
 #include <vector>
 
-#include "executor/controller.h"
-#include "executor/cycle_runner.h"
+#include "executor/loop/controller.h"
+#include "executor/loop/cycle_runner.h"
 #include "executor/telemetry/recorder.h"
-#include "hw/canopen_arm.h"
-#include "sim/lockstep/lockstep.h"
-#include "sim/lockstep/virtual_link.h"
-#include "tests/chain/planned.h"
+#include "hw/arm/canopen_arm.h"
+#include "sim/cell/lockstep/lockstep.h"
+#include "sim/cell/lockstep/virtual_link.h"
 #include "tests/support/allocation_count.h"
+#include "tests/support/planned.h"
 
 namespace tenon::tests {
 namespace {

@@ -6,23 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "sim/faults/fault_spec.h"
-#include "tests/chain/planned.h"
-#include "tests/support/lockstep.h"
+#include "tests/support/faulty_options.h"
+#include "tests/support/planned.h"
+#include "tests/support/whole_run.h"
 
 namespace tenon::tests {
 namespace {
 
 using executor::EndReason;
-
-Lockstep::Options with_faults(const std::vector<std::string>& specs) {
-  Lockstep::Options options;
-  options.start = "1";
-  options.offset[0] = 0.01;
-  options.offset[1] = -0.01;
-  for (const std::string& spec : specs) options.faults.push_back(sim::parse_fault(spec));
-  return options;
-}
 
 /// A run that ends by itself, and is right where it says that it is done.
 class FaultyRun {
@@ -42,8 +33,8 @@ class FaultyRun {
     }
   }
 
-  Lockstep lockstep;
-  Lockstep::Result result;
+  WholeRun lockstep;
+  WholeRun::Result result;
 };
 
 TEST(BusFaults, SingleFramesLateRepeatedAndShortOnesAndAMissedCycleAreRiddenOut) {
@@ -126,16 +117,16 @@ TEST(BusFaults, ABusThatGoesOnLosingFramesEndsTheRunByName) {
 TEST(BusFaults, FaultsWhileTheArmIsBroughtUpEndByNameToo) {
   for (const char* spec : {"drop:node=2,duration_s=100", "interface-down:time_s=0.2",
                            "bus-off:node=127,time_s=0.2", "queue-full:node=127,time_s=0.1"}) {
-    Lockstep run(gantry_cell(), box_task(), box_plan("1"), with_faults({spec}));
+    WholeRun run(gantry_cell(), box_task(), box_plan("1"), with_faults({spec}));
     EXPECT_FALSE(run.prepare()) << spec;
     EXPECT_NE(run.arm().fault().kind, ArmFaultKind::kNone) << spec;
   }
 }
 
 TEST(BusFaults, ANoisyWireCostsErrorFramesAndNoSetpoint) {
-  Lockstep::Options options = with_faults({});
+  WholeRun::Options options = with_faults({});
   options.bit_error_rate = 1e-5;
-  Lockstep run(gantry_cell(), box_task(), box_plan("1"), options);
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), options);
   const auto result = run.run();
   EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
   EXPECT_GT(run.bus().statistics().error_frames, 10U);

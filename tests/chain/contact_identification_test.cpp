@@ -8,21 +8,19 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "executor/cycle_runner.h"
 #include "executor/identification/identify_contact_motion.h"
 #include "executor/identification/identify_payload_motion.h"
-#include "hw/canopen_arm.h"
-#include "shared/config/load.h"
-#include "sim/lockstep/lockstep.h"
-#include "sim/lockstep/virtual_link.h"
-#include "sim/virtual_arm/virtual_cell.h"
-#include "tests/chain/planned.h"
+#include "executor/loop/cycle_runner.h"
+#include "hw/arm/canopen_arm.h"
+#include "sim/cell/lockstep/lockstep.h"
+#include "sim/cell/lockstep/virtual_link.h"
+#include "sim/cell/virtual_arm/virtual_cell.h"
+#include "tests/support/planned.h"
 
 namespace tenon::tests {
 namespace {
@@ -83,14 +81,14 @@ void identify(Drawn& drawn, std::uint64_t seed) {
   drawn.found = executor::identify_contact(motion.samples(), 1e-6 * cell.robot.cycle_us);
 }
 
-TEST(ContactIdentification, FindsTheStiffnessAndTheLagThatTheVirtualArmWasMadeWith) {
+void expect_found(int contacts) {
   std::mt19937_64 random(7);
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1.0p-53;
   };
   const double protocol_s = 2e-6 * gantry_cell().robot.cycle_us;
   std::vector<Drawn> all;
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < contacts; ++i) {
     all.push_back(
         {5e3 * std::pow(20.0, uniform(0.0, 1.0)), std::max(protocol_s, uniform(0.0, 0.020)), {}});
   }
@@ -116,6 +114,15 @@ TEST(ContactIdentification, FindsTheStiffnessAndTheLagThatTheVirtualArmWasMadeWi
   }
   std::printf("%zu contacts: stiffness within %.1f %%, lag within %.2f ms\n", all.size(),
               100.0 * worst_stiffness, 1e3 * worst_lag_s);
+}
+
+TEST(ContactIdentification, FindsTheStiffnessAndTheLagThatTheVirtualArmWasMadeWith) {
+  expect_found(6);
+}
+
+// Where a release needs it (label full).
+TEST(ManyContactIdentifications, FindTheStiffnessAndTheLagThatTheVirtualArmWasMadeWith) {
+  expect_found(24);
 }
 
 TEST(ContactIdentification, WhereNothingStandsItGoesBackAndSaysSo) {
@@ -150,7 +157,7 @@ Task air_task() {
 }
 
 Cell six_axis_cell(const std::string& name) {
-  Cell cell = load_cell(std::filesystem::path(TENON_SOURCE_DIR) / "hw/cells" / (name + ".yaml"));
+  Cell cell = shipped_cell(name);
   cell.payload_mass_kg = 1.3;
   cell.payload_com_m = {0.012, -0.021, 0.094};
   cell.robot.sensor.force_noise_N = 0.2;
@@ -211,17 +218,18 @@ class PoseTour : public executor::IdentificationMotion {
     samples_ = 0;
     sum_.setZero();
   }
-  void run(const ArmFeedback& /*feedback*/) override {
+  Turn run(const ArmFeedback& /*feedback*/) override {
     since_s_ += cycle_s();
-    follow(move_.at(since_s_));
-    if (since_s_ < move_.duration_s() + kSettle_s || !supervision().wrench_usable()) return;
+    if (const auto refused = joints().follow(move_.at(since_s_))) return *refused;
+    if (since_s_ < move_.duration_s() + kSettle_s || !supervision().wrench_usable()) return {};
     sum_ += supervision().wrench();
-    if (++samples_ < kSamples) return;
+    if (++samples_ < kSamples) return {};
     worst_N = std::max(worst_N, (sum_ / kSamples).head<3>().norm());
     turn_max_rad =
         std::max(turn_max_rad, upright_.angularDistance(supervision().tool().orientation));
-    if (++poses == kPoses) return end({.reason = EndReason::kMeasured});
+    if (++poses == kPoses) return executor::Ending{.reason = EndReason::kMeasured};
     go_on();
+    return {};
   }
 
   JointVector first_{};
@@ -244,8 +252,10 @@ TEST_P(SixAxisIdentification, AKnownPayloadLeavesLessThanThreeTenthsOfANewtonInA
               tour.worst_N, 9.80665 * cell.payload_mass_kg, tour.turn_max_rad);
 }
 
-INSTANTIATE_TEST_SUITE_P(Arms, SixAxisIdentification, ::testing::Values("csp6", "lwa4p"),
-                         [](const auto& arm) { return std::string(arm.param); });
+std::string arm_name(const ::testing::TestParamInfo<const char*>& info) { return info.param; }
+
+INSTANTIATE_TEST_SUITE_P(Arms, SixAxisIdentification, ::testing::Values("csp6"), arm_name);
+INSTANTIATE_TEST_SUITE_P(Full, SixAxisIdentification, ::testing::Values("lwa4p"), arm_name);
 
 }  // namespace
 }  // namespace tenon::tests

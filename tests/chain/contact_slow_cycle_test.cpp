@@ -5,22 +5,18 @@
 #include <array>
 #include <string>
 
-#include "executor/plan_check.h"
-#include "planner/plan_builder.h"
-#include "tests/chain/planned.h"
-#include "tests/support/lockstep.h"
+#include "executor/dry_run/plan_check.h"
+#include "planner/judge/plan_draft.h"
+#include "shared/config/load.h"
+#include "tests/support/places.h"
+#include "tests/support/planned.h"
+#include "tests/support/whole_run.h"
 
 namespace tenon::tests {
 namespace {
 
 // The gantry with the bus and the drives of a slow arm.
-Cell slow_cell() {
-  Cell cell = gantry_cell();
-  cell.robot.cycle_us = 10'000;
-  cell.robot.response_lag_s = 0.020;
-  for (Joint& joint : cell.robot.joints) joint.following_error_max = 0.02;
-  return cell;
-}
+Cell slow_cell() { return load_cell(in_tree("tests/plans/slow_gantry3/cell.yaml")); }
 
 TEST(ContactAtASlowCycle, APlanOfTheTaskAsItStandsIsRefused) {
   // D = 1500 against 1.5 * 5e4 * 35 ms, and 6 + 5e4 * 0.05 * (40 ms + 2 / 1500).
@@ -36,16 +32,16 @@ TEST(ContactAtASlowCycle, APlanOfTheTaskAsItStandsIsRefused) {
 TEST(ContactAtASlowCycle, APlanForTheCellReachesTheGoalWhereverTheTableStands) {
   const Cell cell = slow_cell();
   const Start& start = box_start("1");
-  const auto [task, plan] = plan_box(cell, start.name);
+  const auto [task, plan] = planned_box(cell, start.name);
   EXPECT_TRUE(executor::check_plan(plan, cell).empty());
 
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
     double distance = 0.0;
-    Lockstep::Options run_options;
+    WholeRun::Options run_options;
     run_options.start = start.name;
     run_options.seed = seed;
     run_options.offset = draw_offset(task, start, seed, distance);
-    const auto result = Lockstep(cell, task, plan, run_options).run();
+    const auto result = WholeRun(cell, task, plan, run_options).run();
     EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanDone)
         << "seed " << seed << " at " << distance << " sigma: " << result.reason;
     EXPECT_LT(result.truth.error_norm_m, task.goal_tolerance_m) << "seed " << seed;

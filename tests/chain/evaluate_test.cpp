@@ -10,118 +10,67 @@
 #include <string>
 #include <vector>
 
-#include "tests/chain/commands.h"
 #include "tests/support/child_process.h"
-#include "tests/support/sim_process.h"
+#include "tests/support/harsh_evaluation.h"
 
 namespace tenon::tests {
 namespace {
 
-// A sensor that drifts so much that some runs fail.
-constexpr const char* kHarshWorld =
-    "name: harsh\nfriction: [0.1, 0.6]\nforce_drift_N_sqrts: [0.0, 1.2]\n";
-constexpr int kRuns = 8;
-
-class Evaluate : public testing::Test {
+class Evaluate : public testing::Test, protected HarshEvaluation {
  protected:
-  static void SetUpTestSuite() {
-    folder = new ScratchFolder;
-    plan_file = plan_by_command(*folder, "1");
-    experiment_file = folder->put("harsh.yaml", kHarshWorld);
-    const Ended whole = run(*folder, command({"--json", path("whole.json")}));
-    if (whole.status != 0) throw std::runtime_error(whole.err);
-  }
-  static void TearDownTestSuite() {
-    delete folder;
-    folder = nullptr;
+  /// What one call on one thread writes, whole.json and whole.jsonl: what all the rest is held to.
+  void make_whole() const {
+    const Ended whole = evaluate({"--json", path("whole.json")});
+    ASSERT_EQ(whole.status, 0) << whole.err;
   }
 
-  static std::string path(const std::string& name) { return folder->path() / name; }
-
-  static std::vector<std::string> command(const std::vector<std::string>& more) {
-    std::vector<std::string> all = {TENON_EVALUATE_EXE,
-                                    "--cell",
-                                    gantry_cell_file(),
-                                    "--task",
-                                    box_task_file(),
-                                    "--plan",
-                                    plan_file,
-                                    "--experiment",
-                                    experiment_file,
-                                    "--seed",
-                                    "5"};
-    if (std::find(more.begin(), more.end(), "--only") == more.end()) {
-      all.insert(all.end(), {"-n", std::to_string(kRuns)});
-    }
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-
-  static std::size_t lines_in(const std::string& name) {
-    const std::string text = folder->get(name);
+  [[nodiscard]] std::size_t lines_in(const std::string& name) const {
+    const std::string text = folder.get(name);
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   }
-
-  inline static ScratchFolder* folder = nullptr;
-  inline static std::string plan_file;
-  inline static std::string experiment_file;
 };
 
-TEST_F(Evaluate, SomeOfTheRunsFailAndAllOfThemAreKept) {
-  const auto json = nlohmann::json::parse(folder->get("whole.json"));
-  const auto& plan = json["plans"][0];
-  EXPECT_EQ(plan["runs"].size(), kRuns);
-  const int succeeded = plan["summary"]["success"]["succeeded"];
-  EXPECT_GT(succeeded, 0);
-  EXPECT_LT(succeeded, kRuns);
-  for (const auto& made : plan["runs"]) EXPECT_FALSE(made["reason"].get<std::string>().empty());
-}
-
-TEST_F(Evaluate, TwoThreadsGiveTheBytesOfOne) {
-  const Ended ended = run(*folder, command({"--threads", "2", "--json", path("two.json")}));
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(folder->get("two.json"), folder->get("whole.json"));
-}
-
 TEST_F(Evaluate, KilledAndResumedItGivesTheSameBytes) {
+  make_whole();
   {
-    ChildProcess child(folder->path(), command({"--json", path("killed.json")}));
-    EXPECT_TRUE(child.wait_until([] { return lines_in("killed.jsonl") >= 3; }));
+    ChildProcess child(folder.path(), command({"--json", path("killed.json")}));
+    EXPECT_TRUE(child.wait_until([&] { return lines_in("killed.jsonl") >= 3; }));
     child.send(SIGKILL);
     child.wait();
   }
   EXPECT_LT(lines_in("killed.jsonl"), kRuns + 1U);
   std::ofstream(path("killed.jsonl"), std::ios::app) << R"({"plan":"0123)";  // torn
-  const Ended ended = run(*folder, command({"--json", path("killed.json")}));
+  const Ended ended = evaluate({"--json", path("killed.json")});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_NE(ended.out.find("are there already"), std::string::npos) << ended.out;
-  EXPECT_EQ(folder->get("killed.json"), folder->get("whole.json"));
+  EXPECT_EQ(folder.get("killed.json"), folder.get("whole.json"));
   EXPECT_EQ(lines_in("killed.jsonl"), kRuns + 1U);
 }
 
 TEST_F(Evaluate, TwoShardsMergedGiveTheSameBytes) {
+  make_whole();
   for (const std::string shard : {"1", "2"}) {
-    const Ended ended =
-        run(*folder, command({"--shard", shard + "/2", "--runs", path(shard + ".jsonl")}));
+    const Ended ended = evaluate({"--shard", shard + "/2", "--runs", path(shard + ".jsonl")});
     ASSERT_EQ(ended.status, 0) << ended.err;
     EXPECT_EQ(lines_in(shard + ".jsonl"), kRuns / 2 + 1U);
   }
   const Ended ended =
-      run(*folder,
+      run(folder,
           command({"--merge", path("1.jsonl"), path("2.jsonl"), "--json", path("merged.json")}));
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_NE(ended.out.find("8 of 8 runs are there already"), std::string::npos) << ended.out;
-  EXPECT_EQ(folder->get("merged.json"), folder->get("whole.json"));
+  EXPECT_EQ(folder.get("merged.json"), folder.get("whole.json"));
 }
 
 TEST_F(Evaluate, AFailedRunMadeAgainGivesTheSameLine) {
-  const auto json = nlohmann::json::parse(folder->get("whole.json"));
+  make_whole();
+  const auto json = nlohmann::json::parse(folder.get("whole.json"));
   for (const auto& made : json["plans"][0]["runs"]) {
     if (made["class"] == "succeeded") continue;
     const std::string number = std::to_string(made["run"].get<int>());
-    const Ended ended = run(*folder, command({"--only", number}));
+    const Ended ended = evaluate({"--only", number});
     ASSERT_EQ(ended.status, 0) << ended.err;
-    const std::string log = folder->get("whole.jsonl");
+    const std::string log = folder.get("whole.jsonl");
     const std::size_t at = log.find("\"run\":" + number + ",");
     ASSERT_NE(at, std::string::npos);
     const std::size_t begin = log.rfind('\n', at) + 1;
@@ -133,21 +82,22 @@ TEST_F(Evaluate, AFailedRunMadeAgainGivesTheSameLine) {
 }
 
 TEST_F(Evaluate, TheSummaryIsTheResultWithoutItsRuns) {
-  const Ended ended = run(*folder, command({"--runs", path("whole.jsonl"), "--summary",
-                                            path("summary.json"), "--figures", path("figures")}));
+  make_whole();
+  const Ended ended = evaluate({"--runs", path("whole.jsonl"), "--summary", path("summary.json"),
+                                "--figures", path("figures")});
   ASSERT_EQ(ended.status, 0) << ended.err;
-  auto whole = nlohmann::ordered_json::parse(folder->get("whole.json"));
+  auto whole = nlohmann::ordered_json::parse(folder.get("whole.json"));
   whole["plans"][0].erase("runs");
-  EXPECT_EQ(folder->get("summary.json"), whole.dump(1) + "\n");
+  EXPECT_EQ(folder.get("summary.json"), whole.dump(1) + "\n");
   for (const std::string figure : {"runs", "draws", "ends", "errors"}) {
-    EXPECT_EQ(folder->get("figures/start_1_" + figure + ".svg").rfind("<svg xmlns=", 0), 0U);
+    EXPECT_EQ(folder.get("figures/start_1_" + figure + ".svg").rfind("<svg xmlns=", 0), 0U);
   }
 }
 
 TEST_F(Evaluate, TheBlackBoxHoldsEveryCycleOfTheRunThatIsTold) {
-  const Ended ended = run(*folder, command({"--only", "0", "--black-box", path("run.csv")}));
+  const Ended ended = evaluate({"--only", "0", "--black-box", path("run.csv")});
   ASSERT_EQ(ended.status, 0) << ended.err;
-  std::istringstream csv(folder->get("run.csv"));
+  std::istringstream csv(folder.get("run.csv"));
   std::string line;
   std::getline(csv, line);
   EXPECT_EQ(line.rfind("sequence,time_ns,", 0), 0U) << line;
@@ -165,7 +115,7 @@ TEST_F(Evaluate, BadUsageOfTheBlackBoxIsOneLineAndExitsTwo) {
       {{"--only", "0", "--black-box", path("none/run.csv")}, "none/run.csv"},
   };
   for (const auto& [more, named] : bad) {
-    const Ended ended = run(*folder, command(more));
+    const Ended ended = evaluate(more);
     EXPECT_EQ(ended.status, 2) << named;
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
     EXPECT_NE(ended.err.find(named), std::string::npos) << ended.err;
@@ -190,7 +140,7 @@ TEST_F(Evaluate, BadUsageIsOneLineAndExitsTwo) {
       {{"--only", "0", "--json", path("out.json")}, "--only"},
   };
   for (const auto& [more, named] : bad) {
-    const Ended ended = run(*folder, command(more));
+    const Ended ended = evaluate(more);
     EXPECT_EQ(ended.status, 2) << named;
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
     EXPECT_NE(ended.err.find(named), std::string::npos) << ended.err;

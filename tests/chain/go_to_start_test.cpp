@@ -4,29 +4,25 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 
 #include "executor/dry_run/dry_run.h"
-#include "executor/tool_kinematics.h"
-#include "shared/config/load.h"
-#include "tests/chain/planned.h"
-#include "tests/support/lockstep.h"
+#include "executor/motion/tool_kinematics.h"
+#include "tests/support/planned.h"
+#include "tests/support/whole_run.h"
 
 namespace tenon::tests {
 namespace {
 
 using executor::EndReason;
 
-Cell six_axis_cell() { return load_cell(TENON_SOURCE_DIR "/hw/cells/csp6.yaml"); }
-
 // Stands at start 1, which is 0.6 m from the start of the plan.
-Lockstep::Result run_from_another_start(const Cell& cell, bool go_to_start) {
-  Lockstep::Options options;
+WholeRun::Result run_from_another_start(const Cell& cell, bool go_to_start) {
+  WholeRun::Options options;
   options.start = "1";
   options.offset[0] = 0.01;
   options.controller.go_to_start = go_to_start;
-  return Lockstep(cell, box_task(), box_plan("4"), options).run();
+  return WholeRun(cell, box_task(), box_plan("4"), options).run();
 }
 
 TEST(GoToStart, WithoutItTheRunEndsBeforeAnythingMovesAndNamesTheAxis) {
@@ -46,7 +42,7 @@ TEST(GoToStart, AGantryGoesThereAndThePlanReachesItsGoal) {
 
 // Straight in the joints is an arc of the tool, and the part hangs 2 mm above the table.
 TEST(GoToStart, ASixAxisArmThatTouchesTheTableOnItsWayStopsSoftlyAndSaysSo) {
-  const Cell cell = six_axis_cell();
+  const Cell cell = shipped_cell("csp6");
   const auto result = run_from_another_start(cell, true);
   EXPECT_EQ(result.ending.reason, EndReason::kContactOnApproach) << result.reason;
   EXPECT_EQ(result.reason.rfind("touched something on the way to the start: z reads", 0), 0U)
@@ -73,8 +69,8 @@ class SixAxisGoToStart : public ::testing::TestWithParam<const char*> {
     return found.position;
   }
 
-  [[nodiscard]] Lockstep::Options from_away() const {
-    Lockstep::Options options;
+  [[nodiscard]] WholeRun::Options from_away() const {
+    WholeRun::Options options;
     options.start = "1";
     options.joints = away();
     options.controller.go_to_start = true;
@@ -86,13 +82,12 @@ class SixAxisGoToStart : public ::testing::TestWithParam<const char*> {
     EXPECT_EQ(truth.faults, 0U);
   }
 
-  Cell cell = load_cell(std::filesystem::path(TENON_SOURCE_DIR) / "hw/cells" /
-                        (std::string(GetParam()) + ".yaml"));
-  const Planned planned = plan_box(cell, "1");
+  Cell cell = shipped_cell(GetParam());
+  const Planned planned = planned_box(cell, "1");
 };
 
 TEST_P(SixAxisGoToStart, TheToolComesToTheNominalStartAndThePlanToItsGoal) {
-  Lockstep chain(cell, planned.task, planned.plan, from_away());
+  WholeRun chain(cell, planned.task, planned.plan, from_away());
   ASSERT_TRUE(chain.prepare());
   while (chain.controller().state() < executor::State::kRunning) ASSERT_TRUE(chain.cycle());
   const Vector6 off = displacement_between(planned.plan.start, chain.cell().truth().tool);
@@ -115,7 +110,7 @@ TEST_P(SixAxisGoToStart, APostInTheWayStopsItSoftlyAndByName) {
   Shape post{"post", Shape::Kind::kBox, {0.05, 0.30, 0.20}, {}};
   post.pose.position_m = {-0.27, -0.15, 0.10};
   task.environment.push_back(post);
-  const auto result = Lockstep(cell, task, planned.plan, from_away()).run();
+  const auto result = WholeRun(cell, task, planned.plan, from_away()).run();
   EXPECT_EQ(result.ending.reason, EndReason::kContactOnApproach) << result.reason;
   EXPECT_EQ(result.reason.rfind("touched something on the way to the start: ", 0), 0U)
       << result.reason;
@@ -127,8 +122,10 @@ TEST_P(SixAxisGoToStart, APostInTheWayStopsItSoftlyAndByName) {
               result.truth.contact_force_N_max);
 }
 
-INSTANTIATE_TEST_SUITE_P(Arms, SixAxisGoToStart, ::testing::Values("csp6", "lwa4p"),
-                         [](const auto& arm) { return std::string(arm.param); });
+std::string arm_name(const ::testing::TestParamInfo<const char*>& info) { return info.param; }
+
+INSTANTIATE_TEST_SUITE_P(Arms, SixAxisGoToStart, ::testing::Values("csp6"), arm_name);
+INSTANTIATE_TEST_SUITE_P(Full, SixAxisGoToStart, ::testing::Values("lwa4p"), arm_name);
 
 }  // namespace
 }  // namespace tenon::tests

@@ -9,7 +9,8 @@
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/plan/codec.h"
-#include "tests/chain/commands.h"
+#include "tests/support/commands.h"
+#include "tests/support/places.h"
 #include "tests/support/sim_process.h"
 
 namespace tenon::tests {
@@ -19,10 +20,7 @@ class Recertify : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder = new ScratchFolder;
-    // The toy is planned at once, and without a cell.
-    file = folder->path() / "toy.tnp";
-    const Ended ended = run(*folder, {TENON_PLAN_EXE, kToy, "-o", file});
-    ASSERT_EQ(ended.status, 0) << ended.err;
+    file = shared_plan("toy_1d");
   }
   static void TearDownTestSuite() {
     delete folder;
@@ -30,7 +28,8 @@ class Recertify : public testing::Test {
   }
 
   static Ended recertify(const std::string& plan, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> command = {TENON_INSPECT_EXE, plan, "--recertify", kToy};
+    std::vector<std::string> command = {executable("tenon-inspect"), plan, "--recertify",
+                                        toy_file()};
     command.insert(command.end(), more.begin(), more.end());
     return run(*folder, command);
   }
@@ -44,7 +43,7 @@ class Recertify : public testing::Test {
     return folder->put("changed.tnp", {bytes.begin(), bytes.end()});
   }
 
-  static constexpr const char* kToy = TENON_SOURCE_DIR "/planner/tasks/toy_1d.yaml";
+  static std::string toy_file() { return in_tree("planner/tasks/toy_1d.yaml"); }
   inline static ScratchFolder* folder = nullptr;
   inline static std::string file;
 };

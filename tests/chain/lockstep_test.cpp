@@ -1,7 +1,5 @@
 // Plan, executor, CAN protocol and virtual arm together, in virtual time.
 
-#include "tests/support/lockstep.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,9 +9,10 @@
 
 #include "shared/motion/guarded_move.h"
 #include "shared/plan/plan.h"
-#include "sim/rollout/ode_rollout.h"
-#include "tests/chain/planned.h"
+#include "sim/physics/rollout/ode_rollout.h"
 #include "tests/support/frame_filter.h"
+#include "tests/support/planned.h"
+#include "tests/support/whole_run.h"
 
 namespace tenon::tests {
 namespace {
@@ -28,8 +27,8 @@ class Recorder : public executor::CycleSink {
   std::vector<CycleRecord> records;
 };
 
-Lockstep::Options off_by(double x_m, double y_m) {
-  Lockstep::Options options;
+WholeRun::Options off_by(double x_m, double y_m) {
+  WholeRun::Options options;
   options.start = "1";
   options.offset[0] = x_m;
   options.offset[1] = y_m;
@@ -37,7 +36,7 @@ Lockstep::Options off_by(double x_m, double y_m) {
 }
 
 TEST(Chain, ThePartEndsAtTheGoalAlthoughTheTableIsCentimetresOff) {
-  Lockstep run(gantry_cell(), box_task(), box_plan("1"), off_by(0.031, -0.024));
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), off_by(0.031, -0.024));
   const auto result = run.run();
   EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
   EXPECT_LT(result.truth.error_norm_m, box_task().goal_tolerance_m);
@@ -48,7 +47,7 @@ TEST(Chain, ThePartEndsAtTheGoalAlthoughTheTableIsCentimetresOff) {
 
 TEST(Chain, APlanThatDoesNotFitTheWorldStopsWithItsStepAndReason) {
   // Six standard deviations: the walls are nowhere near where any particle had them.
-  Lockstep run(gantry_cell(), box_task(), box_plan("1"), off_by(-0.18, 0.0));
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), off_by(-0.18, 0.0));
   const auto result = run.run();
   EXPECT_EQ(result.ending.reason, EndReason::kPlanFailed) << result.reason;
   EXPECT_NE(result.reason.find("step"), std::string::npos) << result.reason;
@@ -56,7 +55,7 @@ TEST(Chain, APlanThatDoesNotFitTheWorldStopsWithItsStepAndReason) {
 
 TEST(Chain, ATraceFromTheExecutorReplaysOfflineBitForBit) {
   Recorder recorder;
-  Lockstep run(gantry_cell(), box_task(), box_plan("1"), off_by(0.02, 0.015), &recorder);
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), off_by(0.02, 0.015), &recorder);
   const auto result = run.run();
   ASSERT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
 
@@ -130,7 +129,7 @@ Travels first_contact(double force_on_N) {
   EXPECT_EQ(simulated.move.outcome, Outcome::kContact);
   travels.decided_in_rollout_s = 1e-9 * static_cast<double>(simulated.move.decided_ns);
 
-  Lockstep run(cell, task, plan, off_by(0.0, 0.0));
+  WholeRun run(cell, task, plan, off_by(0.0, 0.0));
   const auto result = run.run();
   EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
   const auto& executed = run.controller().runner().report(0).result;
@@ -151,7 +150,7 @@ TEST(Chain, AThresholdInThePlanMovesRolloutAndExecutionAlike) {
 }
 
 // Runs until a move has been under way for a while.
-void into_motion(Lockstep& run) {
+void into_motion(WholeRun& run) {
   ASSERT_TRUE(run.prepare());
   for (int moving = 0; moving < 400;) {
     ASSERT_TRUE(run.cycle());
@@ -161,7 +160,7 @@ void into_motion(Lockstep& run) {
 
 TEST(Chain, AStopRequestRampsDownWithBoundedJerkAndEndsWithBrakesOn) {
   Recorder recorder;
-  Lockstep run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0), &recorder);
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0), &recorder);
   into_motion(run);
   run.controller().request_stop();
   while (run.cycle()) {
@@ -188,7 +187,7 @@ TEST(Chain, AStopRequestRampsDownWithBoundedJerkAndEndsWithBrakesOn) {
 }
 
 TEST(Chain, DrivesStopByThemselvesWhenTheExecutorIsGone) {
-  Lockstep run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0));
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0));
   into_motion(run);
   run.leave_alone(2.0);
   const sim::Truth truth = run.cell().truth();
@@ -205,7 +204,7 @@ TEST(Chain, AfterAMissingAnswerGuardedMovesTakeNoSamplesForAFewCycles) {
   // joint x     lost
   // sample      none  none  none ... then again
   Recorder recorder;
-  Lockstep run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0), &recorder);
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0), &recorder);
   into_motion(run);
   int lost = 0;
   const FrameFilter filter(
@@ -225,7 +224,7 @@ TEST(Chain, AfterAMissingAnswerGuardedMovesTakeNoSamplesForAFewCycles) {
 }
 
 TEST(Chain, TheBusGoingDownInMidMotionIsANamedFault) {
-  Lockstep run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0));
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0));
   into_motion(run);
   run.bus().set_up(false);
   while (run.cycle()) {
@@ -236,8 +235,8 @@ TEST(Chain, TheBusGoingDownInMidMotionIsANamedFault) {
 }
 
 TEST(Chain, ARunRepeatsItselfToTheBit) {
-  const auto once = Lockstep(gantry_cell(), box_task(), box_plan("1"), off_by(0.01, 0.02)).run();
-  const auto again = Lockstep(gantry_cell(), box_task(), box_plan("1"), off_by(0.01, 0.02)).run();
+  const auto once = WholeRun(gantry_cell(), box_task(), box_plan("1"), off_by(0.01, 0.02)).run();
+  const auto again = WholeRun(gantry_cell(), box_task(), box_plan("1"), off_by(0.01, 0.02)).run();
   EXPECT_EQ(once.cycles, again.cycles);
   EXPECT_EQ(once.truth.tool, again.truth.tool);
 }

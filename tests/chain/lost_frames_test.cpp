@@ -7,16 +7,16 @@
 #include <cstdio>
 #include <string>
 
-#include "executor/cycle_runner.h"
-#include "sim/faults/fault_spec.h"
-#include "tests/chain/planned.h"
-#include "tests/support/lockstep.h"
+#include "executor/loop/cycle_runner.h"
+#include "sim/cell/faults/fault_spec.h"
+#include "tests/support/planned.h"
+#include "tests/support/whole_run.h"
 
 namespace tenon::tests {
 namespace {
 
 struct Execution {
-  Lockstep::Result result;
+  WholeRun::Result result;
   std::int64_t incomplete_cycles = 0;
   int probes = 0;
 };
@@ -37,14 +37,14 @@ class ProbeCount final : public executor::CycleSink {
 };
 
 Execution run_with(std::uint64_t seed, const std::string& fault) {
-  Lockstep::Options options;
+  WholeRun::Options options;
   options.start = "1";
   options.seed = seed;
   options.offset[0] = 0.01;
   options.offset[1] = -0.01;
   if (!fault.empty()) options.faults.push_back(sim::parse_fault(fault));
   ProbeCount probes;
-  Lockstep lockstep(gantry_cell(), box_task(), box_plan("1"), options, &probes);
+  WholeRun lockstep(gantry_cell(), box_task(), box_plan("1"), options, &probes);
   Execution run;
   run.result = lockstep.run();
   run.incomplete_cycles = lockstep.statistics().incomplete_cycles;

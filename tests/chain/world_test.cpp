@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "shared/config/load.h"
-#include "sim/virtual_arm/world_draw.h"
-#include "tests/chain/planned.h"
-#include "tests/support/lockstep.h"
+#include "sim/cell/virtual_arm/world_draw.h"
+#include "tests/support/places.h"
+#include "tests/support/planned.h"
+#include "tests/support/whole_run.h"
 
 namespace tenon::tests {
 namespace {
@@ -18,15 +19,14 @@ namespace {
 constexpr std::uint64_t kSeeds = 6;
 
 std::string truth_of(std::uint64_t seed) {
-  static const WorldRanges ranges =
-      load_experiment(TENON_SOURCE_DIR "/sim/experiments/box_on_table.yaml");
-  Lockstep::Options options;
+  static const WorldRanges ranges = load_experiment(in_tree("sim/experiments/box_on_table.yaml"));
+  WholeRun::Options options;
   options.start = "1";
   options.seed = seed;
   options.world = sim::draw_world(ranges, box_task(), seed);
   double distance = 0.0;
   options.offset = draw_offset(box_task(), box_start("1"), seed, distance);
-  const auto result = Lockstep(gantry_cell(), box_task(), box_plan("1"), options).run();
+  const auto result = WholeRun(gantry_cell(), box_task(), box_plan("1"), options).run();
   EXPECT_EQ(result.truth.solver_messages, 0U) << seed;
   return result.reason + "\n" + sim::truth_json(result.truth);
 }
@@ -47,17 +47,16 @@ std::vector<std::string> truths_on(std::size_t thread_count) {
 }
 
 TEST(World, RunsInDrawnWorldsAreTheSameOnOneThreadAndOnTwo) {
-  static_cast<void>(box_plan("1"));  // made here, on one thread
   const std::vector<std::string> one = truths_on(1);
   EXPECT_EQ(one, truths_on(2));
   EXPECT_NE(one[0], one[1]);
 }
 
-Lockstep::Result run_in(const sim::WorldDraw& world) {
-  Lockstep::Options options;
+WholeRun::Result run_in(const sim::WorldDraw& world) {
+  WholeRun::Options options;
   options.start = "1";
   options.world = world;
-  return Lockstep(gantry_cell(), box_task(), box_plan("1"), options).run();
+  return WholeRun(gantry_cell(), box_task(), box_plan("1"), options).run();
 }
 
 TEST(World, ATableThatCalibrationMisplacedIsFoundByTouch) {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "executor/controller.h"
-#include "executor/cycle_runner.h"
-#include "tests/executor/hand_made.h"
-#include "tests/executor/wall_arm.h"
+#include "executor/loop/controller.h"
+#include "executor/loop/cycle_runner.h"
+#include "tests/support/hand_made.h"
+#include "tests/support/wall_arm.h"
 
 namespace tenon::executor {
 

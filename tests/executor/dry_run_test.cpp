@@ -13,7 +13,7 @@
 #include "executor/dry_run/slow_down.h"
 #include "shared/motion/motion_profile.h"
 #include "tests/executor/bench.h"
-#include "tests/executor/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace tenon::executor {
 namespace {

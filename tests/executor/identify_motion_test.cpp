@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "executor/cycle_runner.h"
 #include "executor/identification/identification.h"
+#include "executor/loop/cycle_runner.h"
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
 #include "tests/executor/bench.h"

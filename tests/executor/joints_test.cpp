@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "executor/joint_command.h"
-#include "executor/joint_move.h"
-#include "executor/joint_stop.h"
-#include "tests/executor/hand_made.h"
+#include "executor/motion/joint_command.h"
+#include "executor/motion/joint_move.h"
+#include "executor/motion/joint_stop.h"
+#include "tests/support/hand_made.h"
 
 namespace tenon::executor {
 namespace {

@@ -3,20 +3,21 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <set>
 
-#include "executor/leaky_bucket.h"
-#include "executor/sensor_tare.h"
-#include "executor/state_machine.h"
-#include "executor/stop_profile.h"
-#include "executor/telemetry/black_box.h"
-#include "executor/telemetry/histogram.h"
-#include "executor/wrench_estimator.h"
-#include "tests/executor/hand_made.h"
+#include "executor/loop/leaky_bucket.h"
+#include "executor/motion/stop_profile.h"
+#include "executor/record/black_box.h"
+#include "executor/record/histogram.h"
+#include "executor/sensing/sensor_tare.h"
+#include "executor/sensing/wrench_estimator.h"
+#include "executor/states/state_machine.h"
+#include "tests/support/hand_made.h"
 
 namespace tenon::executor {
 namespace {
@@ -172,17 +173,17 @@ TEST(SensorTare, OneLoudAxisIsRefusedByItsNumber) {
   EXPECT_NEAR(tare.deviation(4), 0.1005, 1e-3);
 }
 
-TEST(LeakyBucket, OneLateCycleInTwentyGoesOnForEverAndABurstDoesNot) {
+TEST(LeakyBucket, OneBadCycleInTwentyGoesOnForEverAndABurstDoesNot) {
   LeakyBucket bucket({.capacity = 50.0, .leak = 0.05});
   for (int i = 0; i < 100'000; ++i) {
     if (i % 21 == 0) {
-      bucket.late(1);
+      bucket.bad(1);
     } else {
       bucket.good();
     }
     ASSERT_FALSE(bucket.full());
   }
-  bucket.late(50);
+  bucket.bad(50);
   EXPECT_TRUE(bucket.full());
 }
 
@@ -231,6 +232,30 @@ TEST(StateMachine, NothingLeadsOutOfFinishedAndAFaultWithDrivesOnIsAQuickStop) {
   EXPECT_EQ(next_state(State::kWaiting, Event::kFault), State::kDisabling);
   EXPECT_EQ(next_state(State::kQuickStopping, Event::kAtRest), State::kDisabling);
   EXPECT_EQ(next_state(State::kDisabling, Event::kDisabled), State::kFinished);
+}
+
+TEST(StateMachine, ItHasTheArrowsOfItsDiagramAndNoOther) {
+  // A row a state, in the order of the enumerators: waiting, taring, approaching, running,
+  // stopping, quick stopping, holding, disabling, finished. A column an event: enabled, tared, at
+  // start, work ended, stop, fault, at rest, held, disabled.
+  constexpr std::array<const char*, 9> kNext = {"1 0 0 0 7 7 0 0 0",  //
+                                                "1 2 1 1 6 5 1 1 1",  //
+                                                "2 2 3 2 4 5 2 2 2",  //
+                                                "3 3 3 6 4 5 3 3 3",  //
+                                                "4 4 4 4 4 5 6 4 4",  //
+                                                "5 5 5 5 5 5 7 5 5",  //
+                                                "6 6 6 6 6 5 6 7 6",  //
+                                                "7 7 7 7 7 7 7 7 8",  //
+                                                "8 8 8 8 8 8 8 8 8"};
+  for (std::size_t state = 0; state < kNext.size(); ++state) {
+    for (std::size_t event = 0; event < kNext.size(); ++event) {
+      EXPECT_EQ(static_cast<int>(next_state(static_cast<State>(state), static_cast<Event>(event))),
+                kNext.at(state)[2 * event] - '0')
+          << state << " " << event;
+    }
+  }
+  EXPECT_EQ(next_state(State::kHolding, static_cast<Event>(99)), State::kQuickStopping);
+  EXPECT_EQ(next_state(static_cast<State>(99), Event::kHeld), State::kQuickStopping);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // Refusals of plans that a cell cannot execute, with their numbers.
 
-#include "executor/plan_check.h"
+#include "executor/dry_run/plan_check.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/executor/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace tenon::executor {
 namespace {

@@ -1,10 +1,10 @@
 // The double itself.
 
-#include "tests/executor/wall_arm.h"
+#include "tests/support/wall_arm.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/executor/hand_made.h"
+#include "tests/support/hand_made.h"
 
 namespace tenon::executor {
 namespace {

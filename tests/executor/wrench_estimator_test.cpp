@@ -1,6 +1,6 @@
 // Weight and inertia of a payload on a tool that turns, against their closed forms.
 
-#include "executor/wrench_estimator.h"
+#include "executor/sensing/wrench_estimator.h"
 
 #include <gtest/gtest.h>
 

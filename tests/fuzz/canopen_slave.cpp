@@ -15,8 +15,8 @@
 
 #include "shared/base/bytes.h"
 #include "shared/canopen/constants.h"
-#include "sim/devices/drive_402.h"
-#include "sim/devices/force_torque_node.h"
+#include "sim/cell/devices/drive_402.h"
+#include "sim/cell/devices/force_torque_node.h"
 #include "tests/fuzz/support/must.h"
 
 namespace {

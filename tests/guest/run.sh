@@ -7,12 +7,6 @@ set -euo pipefail
 bin=$(cd "$1" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-# Planned out here, where it is fast.
-plan=$bin/../box.tnp
-"$bin/tenon-plan" planner/tasks/box_on_table_2d.yaml --start 1 --cell hw/cells/gantry3.yaml -o "$plan" \
-  >/dev/null
-export TENON_BOX_PLAN=$plan
-
 own_namespace=(unshare --net)
 ((EUID == 0)) || own_namespace+=(--map-root-user)
 if "${own_namespace[@]}" ip link add vcan0 type vcan 2>/dev/null; then
@@ -21,4 +15,4 @@ if "${own_namespace[@]}" ip link add vcan0 type vcan 2>/dev/null; then
 else
   echo "this machine's kernel has no CAN: vcan and sja1000 in the guest"
 fi
-tests/guest/boot.sh env TENON_BOX_PLAN="$plan" "$bin/tests_socketcan"
+tests/guest/boot.sh "$bin/tests_socketcan"

@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import re
 import shlex
 import subprocess
 
@@ -21,21 +22,37 @@ class BuildTree:
         return output.split("CMakeFiles/", 1)[1].split(".dir/", 1)[0]
 
     def flags_of(self, target):
-        """The compiler and the flags of a target, without input, output and launcher."""
+        """The compiler and the flags of a target, without launcher, precompiled header, input and output."""
         for entry in self.commands:
             if self.target_of(entry) == target:
                 words = shlex.split(entry["command"])
-                if os.path.basename(words[0]) == "ccache":
-                    words = words[1:]
-                output = words.index("-o")
-                return words[:output]
+                while not re.search(r"(\+\+|cc)(-\d+)?$", words[0]):
+                    words.pop(0)
+                words = words[: words.index("-o")]
+                for i, word in enumerate(words):
+                    if word == "-include" and "cmake_pch" in words[i + 1]:
+                        return words[:i] + words[i + 2 :]
+                return words
         return None
 
-    def compiles(self, target, text, folder):
+    def room_of(self, header):
+        """The target that shows a header, given by its repository path, in its include root."""
+        for root in sorted((self.path / "roots").iterdir()):
+            if (root / header).exists():
+                return root.name
+        return None
+
+    def preprocessed(self, target, text):
+        """`text` as the preprocessor leaves it with the flags of `target`."""
+        run = subprocess.run([*self.flags_of(target), "-E", "-P", "-x", "c++", "-"], input=text, text=True,
+                             capture_output=True, cwd=self.path, check=True)
+        return run.stdout
+
+    def compiles(self, target, text):
         """Compiles `text` as if it were a file of `target`. Returns (ok, messages)."""
         run = subprocess.run(
             [*self.flags_of(target), "-Wno-unused", "-fsyntax-only", "-x", "c++", "-"],
-            input=text, text=True, capture_output=True, cwd=SOURCE / folder, check=False)
+            input=text, text=True, capture_output=True, cwd=self.path, check=False)
         return run.returncode == 0, run.stderr
 
     def dependencies(self):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Shows that a dependency outside the table stops the configure step, whichever way it comes in.
 
-Works on a skeleton: the real CMake files with one dummy source a folder.
+Works on a skeleton: the real CMake files, and every source a dummy.
 
   forbidden_links.py CMAKE
 """
@@ -13,26 +13,27 @@ import tempfile
 
 from build_tree import FOLDERS, SOURCE
 
-MAINS = ("planner/main_plan.cpp", "executor/main_exec.cpp", "sim/main_sim.cpp", "hw/main_can.cpp")
-
 # (what is tried, file, text to replace or None to append, new text, what the message must name)
 CASES = [
-    ("planner declares sim", "planner/CMakeLists.txt", "PUBLIC shared", "PUBLIC shared sim",
-     "'planner' may not use 'sim'"),
+    ("planner declares physics", "planner/CMakeLists.txt", "PUBLIC shared planner_belief planner_search",
+     "PUBLIC shared sim_physics planner_belief planner_search", "'planner' may not use 'sim_physics'"),
     ("shared declares ODE", "shared/CMakeLists.txt", "PUBLIC Eigen3::Eigen",
      "PUBLIC Eigen3::Eigen ODE::ODE", "'shared' may not use 'ODE::ODE'"),
-    ("hw declares executor", "hw/CMakeLists.txt", "PUBLIC shared", "PUBLIC shared executor",
-     "'hw' may not use 'executor'"),
-    ("tenon-exec declares planner", "CMakeLists.txt", "executor hw shared_config",
-     "executor hw shared_config planner", "'tenon-exec' may not use 'planner'"),
-    ("planner links sim behind the functions' back", "CMakeLists.txt", "tenon_check_house()",
-     "target_link_libraries(planner PRIVATE sim)\ntenon_check_house()",
-     "'planner' may not use 'sim'"),
+    ("hw declares executor", "hw/CMakeLists.txt", "PUBLIC shared hw_canopen", "PUBLIC shared executor_loop hw_canopen",
+     "'hw_arm' may not use 'executor_loop'"),
+    ("a room declares its neighbour", "planner/CMakeLists.txt", "(planner_judge FOLDER planner/judge\n  PUBLIC shared",
+     "(planner_judge FOLDER planner/judge\n  PUBLIC shared planner_search",
+     "'planner_judge' may not use 'planner_search'"),
+    ("tenon-exec declares planner", "CMakeLists.txt", "executor_telemetry hw_can",
+     "executor_telemetry planner hw_can", "'tenon-exec' may not use 'planner'"),
+    ("planner links physics behind the functions' back", "CMakeLists.txt", "tenon_check_house()",
+     "target_link_libraries(planner PRIVATE sim_physics)\ntenon_check_house()",
+     "'planner' may not use 'sim_physics'"),
     ("executor links the loaders behind the functions' back", "executor/CMakeLists.txt", None,
-     "target_link_libraries(executor PRIVATE shared_config)\n",
-     "'executor' may not use 'shared_config'"),
+     "target_link_libraries(executor_loop PRIVATE shared_config)\n",
+     "'executor_loop' may not use 'shared_config'"),
     ("executor links a library by name", "executor/CMakeLists.txt", None,
-     "target_link_libraries(executor PRIVATE ode)\n", "'executor' may not use 'ode'"),
+     "target_link_libraries(executor_loop PRIVATE ode)\n", "'executor_loop' may not use 'ode'"),
     ("tests link a main", "tests/CMakeLists.txt", None,
      "target_link_libraries(tests_shared PRIVATE tenon-plan)\n",
      "'tests_shared' may not use 'tenon-plan'"),
@@ -40,7 +41,7 @@ CASES = [
      "target_include_directories(planner PRIVATE ${PROJECT_SOURCE_DIR})\n",
      "forbidden include directory: 'planner'"),
     ("a target outside the house", "hw/CMakeLists.txt", None,
-     "add_library(stray STATIC can.cpp)\n", "'stray' was not declared with the functions"),
+     "add_library(stray STATIC main_can.cpp)\n", "'stray' was not declared with the functions"),
 ]
 
 
@@ -52,11 +53,11 @@ def make_skeleton(root):
         if relative.parts[0] in (*FOLDERS, "lcmtypes", "tests"):
             (root / relative).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, root / relative)
-    for folder in (*FOLDERS, "shared/config", "tests/shared", "tests/benchmarks/paper_tables"):
-        (root / folder).mkdir(parents=True, exist_ok=True)
-        (root / folder / "can.cpp").write_text("int nothing_here;\n")
-    for main in MAINS:
-        (root / main).write_text("int main() { return 0; }\n")
+    for folder in (*FOLDERS, "tests"):
+        for path in (SOURCE / folder).rglob("*.cpp"):
+            dummy = root / path.relative_to(SOURCE)
+            dummy.parent.mkdir(parents=True, exist_ok=True)
+            dummy.write_text("int main() { return 0; }\n")
 
 
 def configure(cmake, root):

@@ -12,7 +12,9 @@ import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 LIBRARIES = ("shared", "planner", "executor", "hw", "sim")
-MAX_LINES = 500
+MAX_LINES = 400
+MAX_FUNCTION_LINES = 60
+PASSAGE_LINES = 6
 
 TOP_LEVEL = {
     "CMakeLists.txt", "CMakePresets.json", "CMakeUserPresets.json", "README.md", "CHANGELOG.md",
@@ -23,7 +25,8 @@ TOP_LEVEL = {
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 IS_MAIN = re.compile(r"^[a-z]+/main_[a-z_]+\.cpp$")
 
-# What a folder may include of the others, as path prefixes. Mains and tests compose freely here: what
+# What a folder may include of the others, as path prefixes; rooms within a folder are kept apart by what
+# their targets show. Mains and tests compose freely here: what
 # they may use is decided by what their targets link.
 MAY_INCLUDE = {
     "shared": ("shared/",),
@@ -31,6 +34,8 @@ MAY_INCLUDE = {
     "planner": ("shared/", "planner/"),
     "hw": ("shared/", "hw/"),
     "sim": ("shared/", "sim/"),
+    # One run of an evaluation: the executor over the master and the bus on the virtual cell.
+    "sim/evaluation_chain": ("shared/", "sim/", "executor/", "hw/"),
     "executor": ("shared/", "executor/", "lcmtypes/"),
     "tests": ("shared/", "planner/", "executor/", "hw/", "sim/", "lcmtypes/", "tests/"),
 }
@@ -40,7 +45,7 @@ RESERVED = [
     ("ODE", re.compile(r"^ode/"), lambda path, main: path.startswith(("sim/", "tests/")) and not main),
     ("LCM", re.compile(r"^(lcm|lcmtypes)/"),
      lambda path, main: path.startswith("tests/") or path == "executor/main_monitor.cpp"
-     or (path.startswith("executor/") and "telemetry" in path)),
+     or path.startswith("executor/telemetry/")),
     ("yaml-cpp", re.compile(r"^yaml-cpp/"),
      lambda path, main: path.startswith(("shared/config/", "tests/"))),
     ("urdfdom", re.compile(r"^urdf"), lambda path, main: path.startswith("shared/config/")),
@@ -84,6 +89,36 @@ def without_comments_and_strings(text):
     return pattern.sub(blank, text)
 
 
+def functions(code):
+    """Yields (line, number of lines) of every function in formatted code without comments and strings."""
+    opened = []  # (kind, line of the opening brace's statement) of every scope that is open
+    head = []  # the statement that has begun
+    for number, line in enumerate(code.splitlines(), 1):
+        text = line.strip()
+        if not text or text.startswith("#") or text in ("public:", "private:", "protected:"):
+            continue
+        head.append((number, text))
+        for character in text:
+            if character == "{":
+                statement = " ".join(part for _, part in head)
+                outer = opened[-1][0] if opened else "namespace"
+                if outer in ("namespace", "class") and re.match(r"(inline )?namespace\b|extern\b", statement):
+                    kind = "namespace"
+                elif outer in ("namespace", "class") and "(" in statement and "=" not in statement.split("(")[0]:
+                    kind = "function"
+                elif re.search(r"\b(class|struct|union|enum)\b", statement):
+                    kind = "class"
+                else:
+                    kind = "block"
+                opened.append((kind, head[0][0]))
+            elif character == "}" and opened:
+                kind, begin = opened.pop()
+                if kind == "function":
+                    yield begin, number - begin + 1
+        if text[-1] in "{};":
+            head = []
+
+
 def check_include(path, main, quote, name):
     if "../" in name:
         yield "goes up a folder; write the path from the repository's root"
@@ -93,7 +128,7 @@ def check_include(path, main, quote, name):
         yield "is no repository path (\"folder/...\")"
     if quote == "<" and ours:
         yield "is ours and takes quotes"
-    folder = path.split("/", 1)[0]
+    folder = max((f for f in MAY_INCLUDE if path.startswith(f + "/")), key=len)
     if ours and not main and not name.startswith(MAY_INCLUDE[folder]):
         yield f"is not for {folder}/"
     if name.startswith("shared/config/") and not main and not path.startswith(("shared/config/", "tests/")):
@@ -121,14 +156,45 @@ def check_file(root, path):
         if match:
             for problem in check_include(path, main, match.group(1), match.group(2)):
                 yield number, f"include of {match.group(2)} {problem}"
-    for number, line in enumerate(without_comments_and_strings(text).splitlines(), 1):
+    code = without_comments_and_strings(text)
+    for number, length in functions(code):
+        if length > MAX_FUNCTION_LINES:
+            yield number, f"a function of {length} lines, more than {MAX_FUNCTION_LINES}"
+    for number, line in enumerate(code.splitlines(), 1):
         for what, pattern, allowed in CODE:
             if pattern.search(line) and not allowed(path, main):
                 yield number, what
 
 
+def passages_that_stand_twice(root):
+    """Findings for every passage of PASSAGE_LINES lines outside tests that stands in two places to the letter.
+
+    Blank lines, lone braces and includes are no part of a passage; one finding a pair of places.
+    """
+    first = {}
+    last = None
+    for folder in LIBRARIES:
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix not in (".h", ".cpp"):
+                continue
+            path = str(file.relative_to(root))
+            lines = [(number, line.strip()) for number, line in
+                     enumerate(file.read_text(encoding="utf-8").splitlines(), 1)]
+            lines = [(number, line) for number, line in lines
+                     if re.search(r"\w", line) and not re.match(r"#|namespace\b|\} *// namespace", line)]
+            for i in range(len(lines) - PASSAGE_LINES + 1):
+                text = tuple(line for _, line in lines[i : i + PASSAGE_LINES])
+                other = first.setdefault(text, (path, lines[i][0], i))
+                if other[:2] == (path, lines[i][0]):
+                    continue
+                if last != (path, i - 1, other[0], other[2] - 1):
+                    yield (f"{path}:{lines[i][0]}: {PASSAGE_LINES} lines and more stand in "
+                           f"{other[0]}:{other[1]} too")
+                last = (path, i, other[0], other[2])
+
+
 def check_repository(root):
-    findings = []
+    findings = list(passages_that_stand_twice(root))
     for entry in sorted(root.iterdir()):
         if not entry.name.startswith(".") and entry.name not in TOP_LEVEL:
             findings.append(f"{entry.name}: does not belong at the top level")
@@ -166,7 +232,10 @@ SELF_TEST = [
     ("hw/p.cpp", '// steady_clock::now()\nconst char* s = "clock_gettime"; int n = 1\'000;\n', None),
     ("executor/real_time_clock.cpp", "auto t = std::chrono::steady_clock::now();\n", None),
     ("sim/q.cpp", "std::random_device seed;\n", "no seed repeats"),
-    ("sim/r.cpp", "int x;\n" * 501, "longer than 500 lines"),
+    ("sim/r.cpp", "int x;\n" * 401, "longer than 400 lines"),
+    ("sim/r2.cpp", "namespace a {\nint f(int x) {\n" + "  ++x;\n" * 59 + "}\n}\n", "a function of 61 lines"),
+    ("sim/r3.cpp", "struct A {\n  int f(int x) {\n" + "".join(f"    x += {i};\n" for i in range(58))
+     + "  }\n};\nint y[] = {\n" + "".join(f"  {i},\n" for i in range(70)) + "};\n", None),
     ("sim/BadName.cpp", "int x;\n", "snake_case"),
     ("sim/s.hpp", "int x;\n", "sources are .h and .cpp"),
     ("tests/hw/t.cpp", "TEST(A, B) { GTEST_SKIP(); }\n", "skips a test"),
@@ -187,11 +256,19 @@ def self_test():
                 failures += 1
                 print(f"FAILED: {path}: expected {expected!r}, found {findings}")
     with tempfile.TemporaryDirectory(prefix="tenon_rules_") as folder:
+        for path in ("planner/a.cpp", "hw/b.cpp"):
+            (pathlib.Path(folder) / path).parent.mkdir()
+            (pathlib.Path(folder) / path).write_text("".join(f"int x{i};\n\n" for i in range(7)))
+        found = check_repository(pathlib.Path(folder))
+        if len(found) != 1 or "stand in" not in found[0]:
+            failures += 1
+            print(f"FAILED: a passage that stands twice: {found}")
+    with tempfile.TemporaryDirectory(prefix="tenon_rules_") as folder:
         (pathlib.Path(folder) / "notes.txt").write_text("")
         if not any("top level" in f for f in check_repository(pathlib.Path(folder))):
             failures += 1
             print("FAILED: a stray file at the top level was not found")
-    print(f"{len(SELF_TEST) + 1} planted cases, {failures} failures")
+    print(f"{len(SELF_TEST) + 2} planted cases, {failures} failures")
     return 1 if failures else 0
 
 

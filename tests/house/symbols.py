@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
-"""Shows by their symbols that no physics engine and no planner is inside tenon-exec.
+"""Shows by their symbols that no physics engine and no planner is inside tenon-exec, and neither executor,
+CANopen, virtual cell nor evaluation inside tenon-plan.
 
 Compares with what the libraries define: their strong symbols, so not the inline functions and
-templates that everybody instantiates. The same question put to tenon-plan must be answered with yes,
-or it proves nothing.
+templates that everybody instantiates. What each must hold is asked for too, or it
+proves nothing.
 
   symbols.py BUILD ODE_LIBRARY
 """
 import pathlib
 import subprocess
 import sys
+
+from build_tree import FOLDERS
 
 STRONG = set("TDBRS")
 
@@ -34,17 +37,19 @@ def contained(executable):
 def main():
     build = pathlib.Path(sys.argv[1])
     ode = defined("--dynamic", sys.argv[2])
-    libraries = {
-        "ODE": {name for name in ode if name.startswith("d") or name.startswith("_Z")},
-        "planner": defined(build / "planner/libplanner.a"),
-        "sim": defined(build / "sim/libsim.a"),
-        "executor": defined(build / "executor/libexecutor.a"),
-    }
+    libraries = {"ODE": {name for name in ode if name.startswith("d") or name.startswith("_Z")}}
+    for room in sorted(path for folder in FOLDERS for path in (build / folder).glob("lib*.a")):
+        libraries[room.stem.removeprefix("lib")] = defined(room)
+    planner = [name for name in libraries if name.startswith("planner")]
+    executor = [name for name in libraries if name.startswith("executor")]
+    sim = [name for name in libraries if name.startswith("sim")]
+    hw = [name for name in libraries if name.startswith("hw")]
+    cell_and_evaluation = [name for name in sim if name != "sim_physics"]
     # A static variable of the same name may stand in two libraries; main is in none.
     failures = 0
     for program, forbidden, expected in (
-            ("tenon-exec", ("ODE", "planner", "sim"), ("executor",)),
-            ("tenon-plan", ("executor",), ("ODE", "planner", "sim"))):
+            ("tenon-exec", ["ODE", *planner, *sim], ["executor_loop"]),
+            ("tenon-plan", [*executor, *cell_and_evaluation, *hw], ["ODE", "planner", "sim_physics"])):
         symbols = contained(build / "bin" / program)
         for name in forbidden + expected:
             common = symbols & libraries[name]

@@ -1,6 +1,6 @@
 // Bring-up against scripted nodes: what is written in which order, and how each failure is named.
 
-#include "hw/bring_up.h"
+#include "hw/arm/bring_up.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "hw/describe_fault.h"
-#include "hw/node_settings.h"
+#include "hw/arm/describe_fault.h"
+#include "hw/arm/node_settings.h"
 #include "tests/hw/gantry_on_bus.h"
 #include "tests/support/frame_filter.h"
 #include "tests/support/refusal.h"

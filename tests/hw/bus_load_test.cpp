@@ -1,4 +1,4 @@
-#include "hw/bus_load.h"
+#include "hw/bus_load/bus_load.h"
 
 #include <gtest/gtest.h>
 

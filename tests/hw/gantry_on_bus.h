@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "hw/canopen_arm.h"
+#include "hw/arm/canopen_arm.h"
 #include "shared/cell/robot.h"
-#include "sim/bus/virtual_bus.h"
+#include "sim/cell/bus/virtual_bus.h"
 #include "tests/hw/scripted_node.h"
 
 namespace tenon::hw {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hw/describe_fault.h"
+#include "hw/arm/describe_fault.h"
 #include "tests/hw/gantry_on_bus.h"
 #include "tests/support/frame_filter.h"
 

@@ -14,6 +14,7 @@
 #include "hw/can/recording_bus.h"
 #include "hw/can/slcan_server.h"
 #include "tests/support/child_process.h"
+#include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
 
 namespace tenon::hw {
@@ -46,7 +47,7 @@ TEST(PythonCan, ExchangesTenThousandFramesWithoutLossAndItsLogIsOurs) {
   RecordingBus bus(server, *ring);
   tests::ChildProcess python(
       folder.path(),
-      {"/usr/bin/python3", "-B", std::string(TENON_SOURCE_DIR) + "/tests/python/exchange.py",
+      {"/usr/bin/python3", "-B", tests::in_tree("tests/python/exchange.py"),
        std::to_string(server.port()), std::to_string(kExchanges), folder.path() / "python.log"});
 
   int received_count = 0;

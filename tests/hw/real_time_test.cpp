@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "hw/arm/canopen_arm.h"
 #include "hw/can/recording_bus.h"
-#include "hw/canopen_arm.h"
 #include "tests/hw/gantry_on_bus.h"
 #include "tests/support/allocation_count.h"
 

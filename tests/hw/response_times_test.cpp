@@ -1,7 +1,7 @@
 // Response times: the analysis against numbers worked out by hand, and every frame of every robot
 // file measured on a virtual bus with an end for each node.
 
-#include "hw/response_times.h"
+#include "hw/bus_load/response_times.h"
 
 #include <gtest/gtest.h>
 
@@ -14,13 +14,14 @@
 #include <string>
 #include <vector>
 
-#include "hw/bus_load.h"
-#include "hw/canopen_arm.h"
+#include "hw/arm/canopen_arm.h"
+#include "hw/bus_load/bus_load.h"
 #include "shared/base/error.h"
 #include "shared/config/load.h"
-#include "sim/bus/virtual_bus.h"
+#include "sim/cell/bus/virtual_bus.h"
 #include "tests/hw/gantry_on_bus.h"
 #include "tests/hw/scripted_node.h"
+#include "tests/support/places.h"
 #include "tests/support/refusal.h"
 
 namespace tenon::hw {
@@ -180,8 +181,7 @@ class TimedBench {
 /// Every robot file, in the order of their names.
 std::vector<std::filesystem::path> robot_files() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(TENON_SOURCE_DIR) + "/hw/robots")) {
+  for (const auto& entry : std::filesystem::directory_iterator(tests::in_tree("hw/robots"))) {
     files.push_back(entry.path() / "robot.yaml");
   }
   std::sort(files.begin(), files.end());

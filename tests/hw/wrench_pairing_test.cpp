@@ -1,4 +1,4 @@
-#include "hw/wrench_pairing.h"
+#include "hw/arm/wrench_pairing.h"
 
 #include <gtest/gtest.h>
 

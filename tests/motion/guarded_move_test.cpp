@@ -11,7 +11,7 @@
 
 #include "shared/ports/rollout.h"
 #include "shared/task/task.h"
-#include "sim/rollout/ode_rollout.h"
+#include "sim/physics/rollout/ode_rollout.h"
 
 namespace tenon {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "shared/motion/admittance.h"
 #include "shared/motion/guarded_move.h"
-#include "sim/ode/ode_world.h"
-#include "sim/rollout/compliant_tool.h"
+#include "sim/physics/rollout/compliant_tool.h"
+#include "sim/physics/solver/ode_world.h"
 
 namespace tenon {
 namespace {

@@ -1,4 +1,4 @@
-#include "planner/belief.h"
+#include "planner/belief/belief.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "executor/plan_check.h"
+#include "executor/dry_run/plan_check.h"
 #include "shared/base/error.h"
 #include "shared/motion/stiff_contact.h"
 #include "tests/planner/room_task.h"

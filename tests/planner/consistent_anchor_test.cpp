@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "planner/attractors.h"
-#include "planner/belief_graph.h"
-#include "planner/mha_search.h"
+#include "planner/search/attractors.h"
+#include "planner/search/belief_graph.h"
+#include "planner/search/mha_search.h"
 #include "shared/config/load.h"
-#include "sim/rollout/ode_rollout.h"
+#include "sim/physics/rollout/ode_rollout.h"
 #include "tests/planner/room_task.h"
+#include "tests/support/places.h"
 
 namespace tenon::planner {
 namespace {
@@ -91,7 +92,7 @@ TEST(ConsistentAnchor, WithAPriceOnEveryMove) {
 }
 
 TEST(ConsistentAnchor, OnRealPhysicsOfABoxOnATable) {
-  const Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml");
+  const Task task = load_task(tests::in_tree("planner/tasks/box_on_table_2d.yaml"));
   EXPECT_GE(watched_search(task, sim::OdeRollout(task), 12), 30U);
 }
 

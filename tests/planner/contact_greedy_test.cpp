@@ -1,13 +1,13 @@
 // The baselines that know one particle only, on the exact double.
 
-#include "planner/contact_greedy.h"
+#include "planner/search/contact_greedy.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "planner/planner.h"
-#include "planner/summary.h"
+#include "planner/report/summary.h"
 #include "shared/plan/codec.h"
 #include "tests/planner/room_task.h"
 

@@ -1,13 +1,13 @@
 // What tenon-inspect and tenon-plan say about a plan.
 
-#include "planner/inspection.h"
+#include "planner/report/inspection.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "planner/plan_builder.h"
-#include "planner/summary.h"
+#include "planner/judge/plan_draft.h"
+#include "planner/report/summary.h"
 #include "tests/planner/room_task.h"
 
 namespace tenon::planner {

@@ -1,4 +1,4 @@
-#include "planner/mha_search.h"
+#include "planner/search/mha_search.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
-#include "planner/attractors.h"
-#include "planner/belief_graph.h"
-#include "planner/plan_builder.h"
+#include "planner/search/attractors.h"
+#include "planner/search/belief_graph.h"
+#include "planner/search/heuristics.h"
 #include "tests/planner/room_task.h"
 
 namespace tenon::planner {

@@ -7,24 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planner/envelopes.h"
-#include "planner/html_report.h"
-#include "planner/inspection.h"
-#include "planner/normal_draws.h"
-#include "planner/summary.h"
+#include "planner/collision.h"
 #include "shared/base/error.h"
 #include "shared/plan/codec.h"
-#include "tests/planner/room_task.h"
+#include "tests/planner/room_plan.h"
 
 namespace tenon::planner {
 namespace {
-
-double stopped_clock() { return 0.0; }
-
-PlanReport planned(const Task& task, const WallRollout::World& world = room(),
-                   const PlannerOptions& options = {}) {
-  return make_plan(task, task.starts.front(), WallRollout(world), options, stopped_clock);
-}
 
 TEST(Planner, FindsAPlanThatBringsEveryDrawToTheGoal) {
   const Task task = room_task();
@@ -259,7 +248,7 @@ TEST(Planner, TheTimeLimitHoldsForTheAttractorsToo) {
   const PlanReport report =
       make_plan(task, task.starts.front(), WallRollout(room()), {}, [&] { return now_s += 61.0; });
   EXPECT_EQ(report.status, PlanStatus::kTimeLimit);
-  EXPECT_EQ(report.attractors, 0U);
+  EXPECT_EQ(report.guides, 0U);
 }
 
 TEST(Planner, TheExpansionLimitIsAReasonOfItsOwn) {
@@ -287,146 +276,6 @@ TEST(Planner, AFreeStepRunsFastAndAContactIsMetSlowly) {
   }
   EXPECT_NEAR(report.plan->steps.back().slow_from_m, report.plan->steps.back().displacement.norm(),
               1e-6);
-}
-
-GuardedMove::Result result_of(Outcome outcome, double x_m, std::uint16_t bits = 0) {
-  GuardedMove::Result result;
-  result.outcome = outcome;
-  result.travelled.x() = x_m;
-  result.signature.bits = bits;
-  return result;
-}
-
-Chain chain_of(const GuardedMove::Result& move) {
-  Chain chain;
-  chain.moves = {move};
-  chain.steps = {0};
-  return chain;
-}
-
-TEST(Envelopes, SpanWhatWasSeenAndTheMarginsAndNothingElse) {
-  const Task task = room_task();
-  const std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.1};
-  const Plan draft = draft_plan(task, task.starts.front(), {}, displacements);
-  // 1 mm, 0.05 m/s * 10 ms, and 0.6 * 3 N / 1000 N/m.
-  EXPECT_NEAR(envelope_margins(draft, task).position_m, 1e-3 + 0.5e-3 + 1.8e-3, 1e-8);
-
-  const std::vector<Chain> contacts = {chain_of(result_of(Outcome::kContact, 0.04, 0b0010)),
-                                       chain_of(result_of(Outcome::kContact, 0.06, 0b0110))};
-  const Plan plan = with_envelopes(draft, task, contacts);
-  const OutcomeRule& rule = plan.steps[0].rule(Outcome::kContact);
-  EXPECT_NEAR(rule.envelope.travelled_min[0], 0.04 - 3.3e-3, 1e-8);
-  EXPECT_NEAR(rule.envelope.travelled_max[0], 0.06 + 3.3e-3, 1e-8);
-  EXPECT_EQ(rule.envelope.always.bits, 0b0010);
-  EXPECT_EQ(rule.envelope.possible.bits, 0b0110);
-  EXPECT_EQ(rule.envelope.travelled_max[2], 0.0);
-  EXPECT_EQ(plan.steps[0].rule(Outcome::kReached).successor, kSuccessorFail);
-}
-
-TEST(Envelopes, WhereSomeMissedTheContactItMayComeAnywhereUpToTheWholeWay) {
-  const Task task = room_task();
-  const std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.1};
-  const Plan draft = draft_plan(task, task.starts.front(), {}, displacements);
-  const std::vector<Chain> chains = {chain_of(result_of(Outcome::kContact, 0.04)),
-                                     chain_of(result_of(Outcome::kReached, 0.10))};
-  const Plan plan = with_envelopes(draft, task, chains);
-  EXPECT_GT(plan.steps[0].rule(Outcome::kContact).envelope.travelled_max[0], 0.10);
-  EXPECT_GT(plan.steps[0].rule(Outcome::kReached).envelope.travelled_min[0], 0.09);
-}
-
-TEST(NormalDraws, HaveTheMomentsAndTailsOfTheNormalDistribution) {
-  NormalDraws random(42);
-  constexpr int kCount = 200000;
-  double sum = 0.0, squares = 0.0, fourth = 0.0;
-  int beyond_one = 0, beyond_two = 0, beyond_three = 0;
-  for (int i = 0; i < kCount; ++i) {
-    const double z = random.normal();
-    sum += z;
-    squares += z * z;
-    fourth += z * z * z * z;
-    beyond_one += std::abs(z) > 1.0 ? 1 : 0;
-    beyond_two += std::abs(z) > 2.0 ? 1 : 0;
-    beyond_three += std::abs(z) > 3.0 ? 1 : 0;
-  }
-  EXPECT_NEAR(sum / kCount, 0.0, 0.01);
-  EXPECT_NEAR(squares / kCount, 1.0, 0.015);
-  EXPECT_NEAR(fourth / kCount, 3.0, 0.12);
-  const auto expected = [](double sigmas) { return kCount * std::erfc(sigmas / std::sqrt(2.0)); };
-  EXPECT_NEAR(beyond_one, expected(1.0), 4.0 * std::sqrt(expected(1.0)));
-  EXPECT_NEAR(beyond_two, expected(2.0), 4.0 * std::sqrt(expected(2.0)));
-  EXPECT_NEAR(beyond_three, expected(3.0), 4.0 * std::sqrt(expected(3.0)));
-}
-
-TEST(Validation, DrawsReachOutToOneSigmaBeyondTheParticlesAndAreRepeatable) {
-  const Task task = room_task();
-  const PlanReport report = planned(task);
-  RolloutPool pool(WallRollout(room()), 1);
-  ValidationParameters parameters;
-  parameters.draws = 1000;
-  const Validation one = validate(*report.plan, task, task.starts.front(), parameters, pool);
-  const Validation two = validate(*report.plan, task, task.starts.front(), parameters, pool);
-  double farthest = 0.0;
-  for (std::size_t i = 0; i < one.draws.size(); ++i) {
-    EXPECT_EQ(one.draws[i].chain.start, two.draws[i].chain.start);
-    farthest = std::max(farthest, one.draws[i].mahalanobis);
-    EXPECT_GE(one.draws[i].chain.start.physics.friction, task.friction.low);
-    EXPECT_LE(one.draws[i].chain.start.physics.friction, task.friction.high);
-  }
-  EXPECT_LE(farthest, 3.0);
-  EXPECT_GT(farthest, 2.5);
-  // Rayleigh's share within two, of those within three.
-  const double share = (1.0 - std::exp(-2.0)) / (1.0 - std::exp(-4.5));
-  EXPECT_NEAR(static_cast<double>(one.within(2.0)), 1000.0 * share, 45.0);
-  EXPECT_EQ(one.at_goal_within(2.0), one.within(2.0));
-}
-
-TEST(Report, IsOneDocumentWithoutOutsideResources) {
-  const Task task = room_task();
-  const PlanReport report = planned(task);
-  ASSERT_EQ(report.status, PlanStatus::kPlanned);
-  const std::string html = html_report(*report.plan, task, report.certification, report.validation);
-  EXPECT_EQ(html.rfind("<!DOCTYPE html>", 0), 0U);
-  for (const char* outside : {"http:", "https:", "src=", "href=", "url(", "@import"}) {
-    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
-  }
-  EXPECT_NE(html.find("the chain holds"), std::string::npos);
-  EXPECT_NE(html.find("Seen from above"), std::string::npos);
-  EXPECT_EQ(html.find("Seen from the side"), std::string::npos);
-}
-
-TEST(Report, SaysWhichContactSettlesEachDirection) {
-  Task task = room_task();
-  Shape wall;
-  wall.name = "low";  // the double's name for whatever is touched at a low coordinate
-  wall.size_m = Vector3::Constant(0.1);
-  wall.pose.position_m = {-0.6, 0.0, 0.0};
-  task.environment = {wall};
-  const PlanReport report = planned(task);
-  ASSERT_EQ(report.status, PlanStatus::kPlanned);
-  const std::string html = html_report(*report.plan, task, report.certification, report.validation);
-  EXPECT_NE(html.find("<li>x 42.4 mm &rarr; 0.0 mm: contact with "), std::string::npos);
-  EXPECT_NE(html.find("<li>y 42.4 mm &rarr; 0.0 mm: contact with "), std::string::npos);
-}
-
-TEST(Report, ShowsTheUncertaintyThatABaselineDoesNotKnow) {
-  const Task task = room_task();
-  PlannerOptions options;
-  options.method = PlanMethod::kSingleParticle;
-  const PlanReport report = planned(task, room(), options);
-  ASSERT_EQ(report.status, PlanStatus::kPlanned);
-  const std::string html = html_report(*report.plan, task, report.certification, report.validation);
-  EXPECT_NE(html.find("baseline <b>single-particle</b>"), std::string::npos);
-  EXPECT_NE(html.find("Root of u of the random starts"), std::string::npos);
-  EXPECT_EQ(html.find("Why it works"), std::string::npos);
-}
-
-TEST(Report, TheStepTableNamesEveryStepAndItsEnd) {
-  const PlanReport report = planned(room_task());
-  const std::string table = step_table(*report.plan);
-  EXPECT_NE(table.find("-> done"), std::string::npos);
-  EXPECT_NE(table.find("contact"), std::string::npos);
-  EXPECT_NE(plan_json(*report.plan, report.bytes.size()).find("\"successor\": \"done\""),
-            std::string::npos);
 }
 
 }  // namespace

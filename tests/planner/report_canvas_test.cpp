@@ -1,6 +1,6 @@
 // What the report draws: which planes, and what a plane cuts.
 
-#include "planner/report_canvas.h"
+#include "planner/report/report_canvas.h"
 
 #include <gtest/gtest.h>
 

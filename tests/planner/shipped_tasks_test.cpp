@@ -7,16 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "planner/collision.h"
 #include "planner/planner.h"
 #include "shared/config/load.h"
-#include "sim/rollout/ode_rollout.h"
+#include "sim/physics/rollout/ode_rollout.h"
+#include "tests/support/places.h"
 
 namespace tenon::planner {
 namespace {
 
 TEST(ShippedTasks, EveryStartAndGoalOfEveryVariantIsFree) {
   std::size_t starts = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(TENON_SOURCE_DIR "/planner/tasks")) {
+  for (const auto& entry : std::filesystem::directory_iterator(tests::in_tree("planner/tasks"))) {
     const std::string file = entry.path().string();
     std::vector<std::string> names = {file};
     for (const std::string& variant : task_variants(file)) names.push_back(file + "#" + variant);

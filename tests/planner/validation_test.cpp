@@ -1,26 +1,23 @@
 // What validation runs besides its draws.
 
-#include "planner/validation.h"
+#include "planner/judge/validation.h"
 
 #include <gtest/gtest.h>
 
-#include "planner/planner.h"
-#include "tests/planner/room_task.h"
+#include "tests/planner/room_plan.h"
 
 namespace tenon::planner {
 namespace {
 
-double stopped_clock() { return 0.0; }
-
-PlanReport planned(const Task& task, std::size_t draws) {
+PlanReport planned_by(std::size_t draws, const Task& task) {
   PlannerOptions options;
-  options.validation.draws = draws;
+  options.draws = draws;
   return make_plan(task, task.starts.front(), WallRollout(room()), options, stopped_clock);
 }
 
 TEST(Validation, TheRimStandsWhereDrawingEndsAndCountsInNoStatistic) {
   const Task task = room_task();
-  const PlanReport report = planned(task, 20);
+  const PlanReport report = planned_by(20, task);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
   const Validation& validation = report.validation;
   const Start& start = task.starts.front();
@@ -41,7 +38,7 @@ TEST(Validation, TheRimStandsWhereDrawingEndsAndCountsInNoStatistic) {
 
 TEST(Validation, AStartOnTheRimStaysWithinTheEnvelopesHoweverFewWereDrawn) {
   const Task task = room_task();
-  const PlanReport report = planned(task, 1);
+  const PlanReport report = planned_by(1, task);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
   const double reach_m = (task.particle_sigmas + 1.0) * task.starts.front().sigma[0];
   WallRollout rollout(room());
@@ -60,7 +57,7 @@ TEST(Validation, AStartOnTheRimThatCollidesIsLeftOut) {
   // Three standard deviations end 2 mm before the wall at x = -0.5, four beyond it.
   task.particle_sigmas = 3.0;
   task.starts.front().sigma[0] = (0.5 - 0.23 - 2e-3) / 3.0;
-  const PlanReport report = planned(task, 20);
+  const PlanReport report = planned_by(20, task);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
   EXPECT_EQ(report.validation.rim.size(), 14U);
 }

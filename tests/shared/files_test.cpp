@@ -99,11 +99,5 @@ TEST(LoadPlan, NamesFileByteFieldAndReason) {
             (folder.path() / "none.tnp").string() + ": cannot be read: No such file or directory");
 }
 
-TEST(Hash, GivesThePublishedValuesOfFnv1a) {
-  EXPECT_EQ(config::fnv1a_64({}), 0xCBF29CE484222325);
-  EXPECT_EQ(config::fnv1a_64(std::string("a")), 0xAF63DC4C8601EC8C);
-  EXPECT_EQ(config::fnv1a_64(std::string("foobar")), 0x85944171F73967E8);
-}
-
 }  // namespace
 }  // namespace tenon

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "shared/config/load.h"
+#include "tests/support/places.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
@@ -75,7 +76,7 @@ TEST_F(LoadExperimentTest, RefusalsNameLineKeyValueAndBound) {
 }
 
 TEST_F(LoadExperimentTest, TheExperimentsOfTheTreeLoad) {
-  const WorldRanges ranges = load_experiment(TENON_SOURCE_DIR "/sim/experiments/box_on_table.yaml");
+  const WorldRanges ranges = load_experiment(tests::in_tree("sim/experiments/box_on_table.yaml"));
   EXPECT_EQ(ranges.name, "box_on_table");
   EXPECT_GT(ranges.task_in_base_error_m.sigma, 0.0);
 }

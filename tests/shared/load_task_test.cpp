@@ -8,6 +8,7 @@
 #include "shared/config/load.h"
 #include "shared/task/inserted.h"
 #include "tests/shared/slide_robot.h"
+#include "tests/support/places.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
@@ -171,7 +172,7 @@ TEST(TaskVariant, RefusesEachBadLineWithItsPlace) {
 
 TEST(TaskVariant, AllThatShipLoadWithTheirFiles) {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(TENON_SOURCE_DIR "/planner/tasks")) {
+  for (const auto& entry : std::filesystem::directory_iterator(tests::in_tree("planner/tasks"))) {
     const std::string file = entry.path().string();
     const std::string base = load_task(file).name;
     for (const std::string& variant : task_variants(file)) {

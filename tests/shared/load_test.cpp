@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/shared/slide_robot.h"
+#include "tests/support/places.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
@@ -118,7 +119,7 @@ TEST(LoadTask, HashIsThatOfTheBytes) {
   EXPECT_NE(load_task(folder.put("c.yaml", std::string(kTask) + "\n")).hash, hash);
 }
 
-TEST(LoadTask, RefusesEachBadLineWithItsPlace) {
+TEST(LoadTask, RefusesEachBadCoordinateAndSpreadWithItsPlace) {
   const std::vector<BadLine> lines = {
       {"sigma_m: [0.03]", "sigma_m: [-0.03]",
        ":8: starts[0].sigma_m[0] = -0.03, must be in (0, 1]"},
@@ -139,6 +140,12 @@ TEST(LoadTask, RefusesEachBadLineWithItsPlace) {
        ":2: coordinates[1] = x, must be listed once"},
       {"coordinates: [x, rz]", "coordinates: []",
        ":2: coordinates: has 0 entries, must have 1 to 6"},
+  };
+  expect_refusals(kTask, lines, [](const std::filesystem::path& file) { (void)load_task(file); });
+}
+
+TEST(LoadTask, RefusesEachBadNameAndShapeWithItsPlace) {
+  const std::vector<BadLine> lines = {
       {"name: right", "name: left", ":9: starts[1].name = left, must be unique among the starts"},
       {"name: wall", "name: peg", ":6: environment[0].name = peg, must be unique among the shapes"},
       {"[-0.1, 0, 0]", "[-0.1, 0, 0.01]",
@@ -160,6 +167,12 @@ TEST(LoadTask, RefusesEachBadLineWithItsPlace) {
        ":1: name = tin\xC3\xBF, must be a name of 1 to 63 printable ASCII characters"},
       {"name: tiny", "name: [a]",
        ":1: name is a list, must be a name of 1 to 63 printable ASCII characters"},
+  };
+  expect_refusals(kTask, lines, [](const std::filesystem::path& file) { (void)load_task(file); });
+}
+
+TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
+  const std::vector<BadLine> lines = {
       {"tolerance_m: 0.002", "tolerance_m: two",
        ":10: goal.tolerance_m = two, must be a number in (0, 1]"},
       {"tolerance_m: 0.002", "tolerance_m: \"0.002\"",
@@ -325,7 +338,7 @@ TEST(LoadCell, NamesTheRobotFileThatIsMissing) {
 }
 
 TEST(ShippedFiles, BoxOnTableHasTwelveStartsInsideItsWalls) {
-  const Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml");
+  const Task task = load_task(tests::in_tree("planner/tasks/box_on_table_2d.yaml"));
   EXPECT_EQ(task.coordinates, 0b000011);
   ASSERT_EQ(task.starts.size(), 12U);
   for (std::size_t i = 0; i < task.starts.size(); ++i) {
@@ -342,7 +355,7 @@ TEST(ShippedFiles, BoxOnTableHasTwelveStartsInsideItsWalls) {
 }
 
 TEST(ShippedFiles, GantryReachesEveryPlaceOfTheTable) {
-  const Cell cell = load_cell(TENON_SOURCE_DIR "/hw/cells/gantry3.yaml");
+  const Cell cell = load_cell(tests::in_tree("hw/cells/gantry3.yaml"));
   ASSERT_EQ(cell.robot.joints.size(), 3U);
   // Tool to flange: the gantry's flange is where its joints are.
   for (const double sign : {-1.0, 1.0}) {

@@ -174,61 +174,13 @@ struct Mutation {
   const char* field;
 };
 
-TEST(PlanCodec, EveryBadValueIsNamedWithItsFieldAndByte) {
-  const Bytes nan = {0x00, 0x00, 0xC0, 0x7F};
-  const Bytes infinity = {0x00, 0x00, 0x80, 0x7F};
-  const Bytes minus_one = {0x00, 0x00, 0x80, 0xBF};
-  const Bytes zero = {0x00, 0x00, 0x00, 0x00};
-  const Bytes hundred = {0x00, 0x00, 0xC8, 0x42};
-  const std::vector<Mutation> mutations = {
-      {0x06, {0x06}, PlanError::kRange, "flags"},
-      {0x06, {0x09}, PlanError::kRange, "flags"},
-      {0x07, {0x00}, PlanError::kRange, "coordinates"},
-      {0x07, {0x40}, PlanError::kRange, "coordinates"},
-      {0x14, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}, PlanError::kNotFinite, "start_position_m"},
-      {0x14, {0, 0, 0, 0, 0, 0x88, 0xC3, 0x40}, PlanError::kRange, "start_position_m"},
-      {0x2C, {0, 0, 0, 0, 0, 0, 0xE0, 0x3F}, PlanError::kRange, "start_orientation"},
-      {0x84, zero, PlanError::kRange, "goal_tolerance_m"},
-      {0x88, nan, PlanError::kNotFinite, "mass_kg"},
-      {0x8C, minus_one, PlanError::kRange, "damping_Nspm"},
-      {0xA0, {0x40}, PlanError::kRange, "compliant_axes"},
-      {0xA1, infinity, PlanError::kNotFinite, "force_limit_N"},
-      {0xA1, minus_one, PlanError::kRange, "force_limit_N"},
-      {0xAD, hundred, PlanError::kRange, "latency_max_s"},
-      {0xB1, {0, 0, 0, 0, 0, 0, 0xF0, 0xBF}, PlanError::kRange, "cost"},
-      {0xB9, {0, 0, 0, 0, 0, 0, 0xE0, 0x3F}, PlanError::kRange, "bound"},
-      {0xC5, {0xC9}, PlanError::kRange, "draws_at_goal"},
-      {0xC9, {0x40}, PlanError::kText, "task_name"},
-      {0xCA, {0x0A}, PlanError::kText, "task_name"},
-      {0xDB, {0x00}, PlanError::kCount, "parameter_set_count"},
-      {0xDB, {0xC9}, PlanError::kCount, "parameter_set_count"},
-      {0xDB, {0xC8}, PlanError::kTruncated, "step_count"},
-      {0xDC, {0x00}, PlanError::kCount, "step_count"},
-      {0xDC, {0xC9}, PlanError::kCount, "step_count"},
-      {0xDC, {0xC8}, PlanError::kTruncated, "step_count"},
-      {0xDC, {0x04}, PlanError::kTruncated, "parameter_set"},
-      {0xDC, {0x02}, PlanError::kSuccessor, "successor"},
-      {0xDD, hundred, PlanError::kRange, "approach_mps"},
-      {0xFD, hundred, PlanError::kRange, "thresholds"},
-      {0x101, zero, PlanError::kRange, "force_keep_N"},
-      {0x101, {0x00, 0x00, 0xE0, 0x40}, PlanError::kRange, "thresholds"},
-      {0x118, {0x01}, PlanError::kRange, "debounce_us"},
-      {0x119, zero, PlanError::kRange, "timeout_us"},
-      {0x11D, {0xFF, 0x1F}, PlanError::kRange, "trigger_mask"},
-      {0x11F, {0x01}, PlanError::kIndex, "parameter_set"},
-      {0x120, {0x22}, PlanError::kRange, "outcomes"},
-      {0x121, minus_one, PlanError::kRange, "slow_from_m"},
-      {0x125, nan, PlanError::kNotFinite, "displacement"},
-      {0x125, hundred, PlanError::kRange, "displacement"},
-      {0x12D, {0x00}, PlanError::kSuccessor, "successor"},
-      {0x12D, {0x03}, PlanError::kSuccessor, "successor"},
-      {0x12D, {0xFF}, PlanError::kSuccessor, "successor"},
-      {0x150, {0x01}, PlanError::kSuccessor, "successor"},
-      {0x12E, {0x00, 0x10}, PlanError::kRange, "always"},
-      {0x12E, {0x03}, PlanError::kRange, "possible"},
-      {0x132, infinity, PlanError::kNotFinite, "travelled_min"},
-      {0x136, minus_one, PlanError::kRange, "travelled_max"},
-  };
+const Bytes kNan = {0x00, 0x00, 0xC0, 0x7F};
+const Bytes kInfinity = {0x00, 0x00, 0x80, 0x7F};
+const Bytes kMinusOne = {0x00, 0x00, 0x80, 0xBF};
+const Bytes kZero = {0x00, 0x00, 0x00, 0x00};
+const Bytes kHundred = {0x00, 0x00, 0xC8, 0x42};
+
+void expect_named(const std::vector<Mutation>& mutations) {
   const Bytes whole = encode_plan(documented_plan());
   for (const Mutation& mutation : mutations) {
     Bytes bytes = whole;
@@ -240,6 +192,63 @@ TEST(PlanCodec, EveryBadValueIsNamedWithItsFieldAndByte) {
     EXPECT_STREQ(to_string(result.error), to_string(mutation.error)) << mutation.field;
     EXPECT_EQ(result.field, mutation.field);
   }
+}
+
+TEST(PlanCodec, EveryBadValueOfTheHeaderIsNamedWithItsFieldAndByte) {
+  expect_named({
+      {0x06, {0x06}, PlanError::kRange, "flags"},
+      {0x06, {0x09}, PlanError::kRange, "flags"},
+      {0x07, {0x00}, PlanError::kRange, "coordinates"},
+      {0x07, {0x40}, PlanError::kRange, "coordinates"},
+      {0x14, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}, PlanError::kNotFinite, "start_position_m"},
+      {0x14, {0, 0, 0, 0, 0, 0x88, 0xC3, 0x40}, PlanError::kRange, "start_position_m"},
+      {0x2C, {0, 0, 0, 0, 0, 0, 0xE0, 0x3F}, PlanError::kRange, "start_orientation"},
+      {0x84, kZero, PlanError::kRange, "goal_tolerance_m"},
+      {0x88, kNan, PlanError::kNotFinite, "mass_kg"},
+      {0x8C, kMinusOne, PlanError::kRange, "damping_Nspm"},
+      {0xA0, {0x40}, PlanError::kRange, "compliant_axes"},
+      {0xA1, kInfinity, PlanError::kNotFinite, "force_limit_N"},
+      {0xA1, kMinusOne, PlanError::kRange, "force_limit_N"},
+      {0xAD, kHundred, PlanError::kRange, "latency_max_s"},
+      {0xB1, {0, 0, 0, 0, 0, 0, 0xF0, 0xBF}, PlanError::kRange, "cost"},
+      {0xB9, {0, 0, 0, 0, 0, 0, 0xE0, 0x3F}, PlanError::kRange, "bound"},
+      {0xC5, {0xC9}, PlanError::kRange, "draws_at_goal"},
+      {0xC9, {0x40}, PlanError::kText, "task_name"},
+      {0xCA, {0x0A}, PlanError::kText, "task_name"},
+  });
+}
+
+TEST(PlanCodec, EveryBadValueOfSetsAndStepsIsNamedWithItsFieldAndByte) {
+  expect_named({
+      {0xDB, {0x00}, PlanError::kCount, "parameter_set_count"},
+      {0xDB, {0xC9}, PlanError::kCount, "parameter_set_count"},
+      {0xDB, {0xC8}, PlanError::kTruncated, "step_count"},
+      {0xDC, {0x00}, PlanError::kCount, "step_count"},
+      {0xDC, {0xC9}, PlanError::kCount, "step_count"},
+      {0xDC, {0xC8}, PlanError::kTruncated, "step_count"},
+      {0xDC, {0x04}, PlanError::kTruncated, "parameter_set"},
+      {0xDC, {0x02}, PlanError::kSuccessor, "successor"},
+      {0xDD, kHundred, PlanError::kRange, "approach_mps"},
+      {0xFD, kHundred, PlanError::kRange, "thresholds"},
+      {0x101, kZero, PlanError::kRange, "force_keep_N"},
+      {0x101, {0x00, 0x00, 0xE0, 0x40}, PlanError::kRange, "thresholds"},
+      {0x118, {0x01}, PlanError::kRange, "debounce_us"},
+      {0x119, kZero, PlanError::kRange, "timeout_us"},
+      {0x11D, {0xFF, 0x1F}, PlanError::kRange, "trigger_mask"},
+      {0x11F, {0x01}, PlanError::kIndex, "parameter_set"},
+      {0x120, {0x22}, PlanError::kRange, "outcomes"},
+      {0x121, kMinusOne, PlanError::kRange, "slow_from_m"},
+      {0x125, kNan, PlanError::kNotFinite, "displacement"},
+      {0x125, kHundred, PlanError::kRange, "displacement"},
+      {0x12D, {0x00}, PlanError::kSuccessor, "successor"},
+      {0x12D, {0x03}, PlanError::kSuccessor, "successor"},
+      {0x12D, {0xFF}, PlanError::kSuccessor, "successor"},
+      {0x150, {0x01}, PlanError::kSuccessor, "successor"},
+      {0x12E, {0x00, 0x10}, PlanError::kRange, "always"},
+      {0x12E, {0x03}, PlanError::kRange, "possible"},
+      {0x132, kInfinity, PlanError::kNotFinite, "travelled_min"},
+      {0x136, kMinusOne, PlanError::kRange, "travelled_max"},
+  });
 }
 
 TEST(PlanCodec, RandomDamageUnderARightChecksumIsRefusedOrHasOneEncoding) {

@@ -10,13 +10,14 @@
 
 #include "shared/plan/codec.h"
 #include "tests/shared/example_plans.h"
+#include "tests/support/places.h"
 
 namespace tenon {
 namespace {
 
 // The bytes of the fenced block "dump": lines of an offset, two blanks, bytes, two blanks, a note.
 std::vector<std::uint8_t> documented_bytes() {
-  std::ifstream document(TENON_SOURCE_DIR "/shared/plan/FORMAT.md");
+  std::ifstream document(tests::in_tree("shared/plan/FORMAT.md"));
   std::vector<std::uint8_t> bytes;
   bool inside = false;
   for (std::string line; std::getline(document, line);) {

@@ -12,10 +12,11 @@
 #include <random>
 #include <string>
 
-#include "hw/bus_load.h"
+#include "hw/bus_load/bus_load.h"
 #include "shared/config/load.h"
 #include "shared/kinematics/serial_chain.h"
 #include "tests/support/allocation_count.h"
+#include "tests/support/places.h"
 
 namespace tenon {
 namespace {
@@ -25,10 +26,10 @@ using Status = SerialChain::InverseStatus;
 constexpr double kPi = std::numbers::pi;
 
 Robot shipped(const std::string& name) {
-  return load_robot(TENON_SOURCE_DIR "/hw/robots/" + name + "/robot.yaml");
+  return load_robot(tests::in_tree("hw/robots/" + name + "/robot.yaml"));
 }
 Cell shipped_cell(const std::string& name) {
-  return load_cell(TENON_SOURCE_DIR "/hw/cells/" + name + ".yaml");
+  return load_cell(tests::in_tree("hw/cells/" + name + ".yaml"));
 }
 
 struct LiteralFrame {

@@ -1,16 +1,15 @@
 // The articulated arm against the mechanics of mechanics.h and what follows from it in closed form.
 
-#include "sim/virtual_arm/arm_body.h"
+#include "sim/cell/virtual_arm/arm_body.h"
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <vector>
 
 #include "shared/base/error.h"
+#include "tests/sim/arm_bench.h"
 #include "tests/sim/mechanics.h"
 #include "tests/sim/six_axis_cell.h"
 #include "tests/support/refusal.h"
@@ -18,91 +17,9 @@
 namespace tenon::sim {
 namespace {
 
-constexpr double kStep_s = 0.0005;
-
-class Bench {
- public:
-  explicit Bench(const Cell& cell, const JointVector& start,
-                 const ArmBody::Parameters& parameters = ArmBody::Parameters())
-      : demands(cell.robot.joints.size()), arm(cell, empty_task(), with(parameters, start)) {
-    for (std::size_t i = 0; i < demands.size(); ++i) {
-      demands[i].position = start[i];
-      demands[i].effort_max = cell.robot.joints[i].effort_max;
-    }
-  }
-
-  void enable() {
-    for (ServoJoint::Demand& demand : demands) enable(demand);
-  }
-  static void enable(ServoJoint::Demand& demand) {
-    demand.brake = false;
-    demand.powered = true;
-  }
-  void release_all() {
-    for (ServoJoint::Demand& demand : demands) demand.brake = demand.powered = false;
-  }
-  void run(double duration_s) {
-    for (double left_s = duration_s; left_s > 0.5 * kStep_s; left_s -= kStep_s) {
-      arm.step(demands, kStep_s);
-    }
-  }
-  [[nodiscard]] JointVector position() const {
-    JointVector position{};
-    for (std::size_t i = 0; i < demands.size(); ++i) position[i] = arm.joint(i).position;
-    return position;
-  }
-
-  std::vector<ServoJoint::Demand> demands;
-  ArmBody arm;
-
- private:
-  static ArmBody::Parameters with(ArmBody::Parameters parameters, const JointVector& start) {
-    parameters.start = start;
-    return parameters;
-  }
-};
-
-ArmBody::Parameters without_integral() {
-  ArmBody::Parameters parameters;
-  parameters.integral_time_s = 0.0;
-  return parameters;
-}
-
-JointVector random_position(const Cell& cell, std::mt19937_64& random) {
-  JointVector position{};
-  for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
-    const Joint& joint = cell.robot.joints[i];
-    const double part = static_cast<double>(random() >> 11) * 0x1p-53;
-    position[i] = joint.lower + part * (joint.upper - joint.lower);
-  }
-  return position;
-}
-
-/// Links as given, one behind the other along x, turning about y; gravity along -z.
-Cell pendulum(const std::vector<double>& lengths_m, const std::vector<double>& masses_kg) {
-  Cell cell = six_axis_cell();
-  cell.robot.joints.resize(lengths_m.size());
-  cell.robot.flange = cell.X_FS = cell.X_FP = Pose{};
-  for (std::size_t i = 0; i < lengths_m.size(); ++i) {
-    Joint& joint = cell.robot.joints[i];
-    joint.origin = {{i == 0 ? 0.0 : lengths_m[i - 1], 0.0, 0.0}, {1, 0, 0, 0}};
-    joint.axis = Vector3::UnitY();
-    joint.lower = -6.0;
-    joint.upper = 6.0;
-    joint.link.mass_kg = masses_kg[i];
-    joint.link.com_m = {lengths_m[i], 0.0, 0.0};
-    joint.link.inertia_kgm2 = 1e-3 * Eigen::Matrix3d::Identity();
-  }
-  cell.payload_mass_kg = 0.01;
-  cell.payload_com_m = Vector3::Zero();
-  return cell;
-}
-
-constexpr JointVector kElbow = {0.3, -0.6, 1.1, -0.4, 0.9, 0.5, 0.0};
-
 TEST(ArmBodyTest, TheToolStandsWhereTheJointsSayAtTheStartAndAfterAMotion) {
   const Cell cell = six_axis_cell();
-  Bench bench(cell, kElbow);
+  ArmBench bench(cell, kElbow);
   bench.enable();
   const auto check = [&] {
     Eigen::Isometry3d sensor;
@@ -129,7 +46,7 @@ TEST(ArmBodyTest, AtRestEveryServoCarriesTheTorqueOfGravity) {
   const Cell cell = six_axis_cell();
   std::mt19937_64 random(3);
   for (int pose = 0; pose < 5; ++pose) {
-    Bench bench(cell, random_position(cell, random));
+    ArmBench bench(cell, random_position(cell, random));
     bench.enable();
     bench.run(0.5);
     const JointVector position = bench.position();
@@ -145,7 +62,7 @@ TEST(ArmBodyTest, AtRestEveryServoCarriesTheTorqueOfGravity) {
 
 TEST(ArmBodyTest, WithoutAnIntegralPartItSagsByEffortOverStiffness) {
   const Cell cell = six_axis_cell();
-  Bench bench(cell, kElbow, without_integral());
+  ArmBench bench(cell, kElbow, without_integral());
   bench.enable();
   bench.run(0.5);
   for (std::size_t i = 0; i < 6; ++i) {
@@ -161,7 +78,7 @@ TEST(ArmBodyTest, AtRestTheSensorReadsThePayloadsWeightInItsAxesAtAHundredPoses)
   cell.up_B = Vector3(0.2, -0.5, 0.9).normalized();  // hung askew
   std::mt19937_64 random(4);
   for (int pose = 0; pose < 100; ++pose) {
-    Bench bench(cell, random_position(cell, random));
+    ArmBench bench(cell, random_position(cell, random));
     if (pose % 2 == 0) bench.enable();
     bench.run(pose % 2 == 0 ? 0.4 : 0.02);
     Eigen::Isometry3d sensor;
@@ -180,7 +97,7 @@ TEST(ArmBodyTest, InMotionTheSensorFeelsThePayloadsInertia) {
   cell.robot.joints[0].axis = Vector3::UnitZ();
   cell.payload_mass_kg = 0.5;
   cell.payload_com_m = {0.6, 0.0, 0.0};
-  Bench bench(cell, {});
+  ArmBench bench(cell, {});
   bench.enable();
   constexpr double kSpeed_radps = 1.5;
   for (int i = 0; i < 2000; ++i) {
@@ -202,8 +119,8 @@ TEST(ArmBodyTest, AServoIsCriticallyDampedInAnyPose) {
   for (const JointVector& start : {JointVector{0.0, 1.5, 0.0, 0.0, 0.0, 0.0, 0.0},
                                    JointVector{0.0, 1.5, 2.5, 0.3, 1.5, 0.0}}) {
     for (const std::size_t joint : {1U, 2U, 5U}) {
-      Bench bench(cell, start, without_integral());
-      Bench::enable(bench.demands[joint]);
+      ArmBench bench(cell, start, without_integral());
+      ArmBench::enable(bench.demands[joint]);
       bench.run(0.3);
       const double from = bench.arm.joint(joint).position;
       const double inertia =
@@ -227,7 +144,7 @@ TEST(ArmBodyTest, AServoIsCriticallyDampedInAnyPose) {
 
 TEST(ArmBodyTest, BrakesHoldTheWholeArm) {
   const Cell cell = six_axis_cell();
-  Bench bench(cell, kElbow);
+  ArmBench bench(cell, kElbow);
   bench.run(2.0);
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(bench.arm.joint(i).position, kElbow[i], 1e-6) << i;
@@ -237,7 +154,7 @@ TEST(ArmBodyTest, BrakesHoldTheWholeArm) {
 
 TEST(ArmBodyTest, ReleasingTheBrakesMovesNoJoint) {
   const Cell cell = six_axis_cell();
-  Bench bench(cell, kElbow);
+  ArmBench bench(cell, kElbow);
   bench.run(0.1);
   bench.enable();
   for (int i = 0; i < 400; ++i) {
@@ -248,39 +165,9 @@ TEST(ArmBodyTest, ReleasingTheBrakesMovesNoJoint) {
   }
 }
 
-// M_jj q'' = -dV/dq_j, the other joints braked.
-TEST(ArmBodyTest, AJointThatNothingHoldsFallsFreely) {
-  const Cell cell = six_axis_cell();
-  for (const std::size_t joint : {1U, 2U, 4U}) {
-    Bench bench(cell, kElbow);
-    bench.demands[joint].brake = false;
-    const double fall_radps2 =
-        -gravity_effort(cell, kElbow, joint) /
-        mass_matrix(cell, kElbow)(static_cast<int>(joint), static_cast<int>(joint));
-    ASSERT_GT(std::abs(fall_radps2), 1.0);
-    constexpr double kTime_s = 0.05;
-    bench.run(kTime_s);
-    const double fallen = bench.arm.joint(joint).position - kElbow[joint];
-    EXPECT_NEAR(fallen, 0.5 * fall_radps2 * kTime_s * kTime_s, 0.03 * std::abs(fallen)) << joint;
-    for (std::size_t i = 0; i < 6; ++i) {
-      if (i == joint) continue;
-      EXPECT_NEAR(bench.arm.joint(i).position, kElbow[i], 1e-6) << i;
-    }
-  }
-}
-
-TEST(ArmBodyTest, AnArmWithoutBrakesAndPowerFallsDown) {
-  const Cell cell = six_axis_cell();
-  Bench bench(cell, kElbow);
-  bench.release_all();
-  const double before_m = bench.arm.tool().position_m.z();
-  bench.run(0.5);
-  EXPECT_LT(bench.arm.tool().position_m.z(), before_m - 0.2);
-}
-
 TEST(ArmBodyTest, AServoThatLostItsTorqueGivesWay) {
   const Cell cell = six_axis_cell();
-  Bench bench(cell, kElbow);
+  ArmBench bench(cell, kElbow);
   bench.enable();
   bench.run(0.1);
   const double needed_Nm = std::abs(gravity_effort(cell, kElbow, 1));
@@ -293,69 +180,12 @@ TEST(ArmBodyTest, AServoThatLostItsTorqueGivesWay) {
   EXPECT_NEAR(std::abs(bench.arm.joint(1).effort), 0.5 * needed_Nm, 1e-6);
 }
 
-TEST(ArmBodyTest, AFreeArmNeverGainsEnergy) {
-  const Cell cell = six_axis_cell();
-  std::mt19937_64 random(5);
-  for (int pose = 0; pose < 3; ++pose) {
-    Bench bench(cell, random_position(cell, random));
-    bench.release_all();
-    const double start_J = bench.arm.energy_J();
-    // All the energy that there is to gain: from the lowest pose to straight up, some 40 J.
-    for (int i = 0; i < 4000; ++i) {
-      bench.arm.step(bench.demands, kStep_s);
-      ASSERT_LT(bench.arm.energy_J(), start_J + 0.02) << "pose " << pose << " step " << i;
-    }
-    EXPECT_EQ(bench.arm.solver_messages(), 0U);
-  }
-}
-
-// Small swings about hanging: (K - w^2 M) v = 0. Started in a mode's shape it swings in that mode.
-TEST(ArmBodyTest, AFreeDoublePendulumSwingsWithThePeriodsOfItsModes) {
-  const Cell cell = pendulum({0.35, 0.30}, {2.0, 1.2});
-  JointVector hanging{};
-  hanging[0] = std::numbers::pi / 2;  // x turned down about y
-  constexpr double kSmall = 1e-3;
-  Eigen::Matrix2d stiffness;
-  for (std::size_t i = 0; i < 2; ++i) {
-    for (std::size_t j = 0; j < 2; ++j) {
-      stiffness(static_cast<int>(i), static_cast<int>(j)) =
-          (gravity_effort(cell, shifted(hanging, j, kSmall), i) -
-           gravity_effort(cell, shifted(hanging, j, -kSmall), i)) /
-          (2.0 * kSmall);
-    }
-  }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> modes(stiffness,
-                                                                        mass_matrix(cell, hanging));
-  for (int mode = 0; mode < 2; ++mode) {
-    const Eigen::Vector2d shape = 0.01 * modes.eigenvectors().col(mode).normalized();
-    JointVector start = hanging;
-    start[0] += shape[0];
-    start[1] += shape[1];
-    Bench bench(cell, start);
-    bench.release_all();
-    std::vector<double> crossings_s;
-    double before = shape[0];
-    for (int i = 1; i < 20'000 && crossings_s.size() < 11; ++i) {
-      bench.arm.step(bench.demands, kStep_s);
-      const double now = bench.arm.joint(0).position - hanging[0];
-      if (before * now < 0.0) {
-        crossings_s.push_back((i - now / (now - before)) * kStep_s);
-      }
-      before = now;
-    }
-    ASSERT_EQ(crossings_s.size(), 11U);
-    const double period_s = (crossings_s.back() - crossings_s.front()) / 5.0;
-    const double expected_s = 2.0 * std::numbers::pi / std::sqrt(modes.eigenvalues()[mode]);
-    EXPECT_NEAR(period_s, expected_s, 1e-3 * expected_s) << mode;
-  }
-}
-
 TEST(ArmBodyTest, PositionsGoOnBeyondHalfATurnAndEndAtTheStops) {
   Cell cell = pendulum({0.3}, {1.0});
   cell.up_B = Vector3::UnitY();  // turns level
   JointVector start{};
   start[0] = 2.5;
-  Bench bench(cell, start);
+  ArmBench bench(cell, start);
   bench.enable();
   const auto turn = [&](double speed_radps, double duration_s) {
     bench.demands[0].velocity = speed_radps;
@@ -387,7 +217,7 @@ TEST(ArmBodyTest, BacklashIsBetweenEncoderAndLink) {
   parameters.backlash_rad = 0.002;
   JointVector start{};
   start[0] = -std::numbers::pi / 2 - 0.3;
-  Bench bench(cell, start, parameters);
+  ArmBench bench(cell, start, parameters);
   bench.enable();
   bench.run(0.3);
   const double play_before = bench.arm.joint(0).encoder - bench.arm.joint(0).position;

@@ -8,7 +8,7 @@
 
 #include "shared/base/error.h"
 #include "shared/kinematics/serial_chain.h"
-#include "sim/virtual_arm/start_joints.h"
+#include "sim/cell/virtual_arm/start_joints.h"
 #include "tests/sim/literal_cell.h"
 #include "tests/sim/six_axis_cell.h"
 #include "tests/support/refusal.h"

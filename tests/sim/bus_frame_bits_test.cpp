@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/bus/frame_bits.h"
+#include "sim/cell/bus/frame_bits.h"
 
 namespace tenon::sim {
 namespace {

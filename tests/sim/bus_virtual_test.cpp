@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/bus/frame_bits.h"
-#include "sim/bus/virtual_bus.h"
+#include "sim/cell/bus/frame_bits.h"
+#include "sim/cell/bus/virtual_bus.h"
 
 namespace tenon::sim {
 namespace {

@@ -1,6 +1,6 @@
 // Many shapes that make up one face behave as one shape: as stiff, and without a crowd of contacts.
 
-#include "sim/ode/contact_points.h"
+#include "sim/physics/contacts/contact_points.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "shared/task/ring.h"
-#include "sim/ode/ode_world.h"
-#include "sim/rollout/ode_rollout.h"
+#include "sim/physics/rollout/ode_rollout.h"
+#include "sim/physics/solver/ode_world.h"
 
 namespace tenon::sim {
 namespace {

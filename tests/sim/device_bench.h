@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "shared/ports/can_bus.h"
-#include "sim/devices/drive_402.h"
-#include "sim/devices/force_torque_node.h"
+#include "sim/cell/devices/drive_402.h"
+#include "sim/cell/devices/force_torque_node.h"
 #include "tests/support/canopen_client.h"
 
 namespace tenon::sim {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <set>
 
-#include "sim/canopen/eds.h"
-#include "sim/devices/robot_devices.h"
+#include "sim/cell/canopen/eds.h"
+#include "sim/cell/devices/robot_devices.h"
 #include "tests/sim/device_bench.h"
 #include "tests/sim/eds_file.h"
 #include "tests/support/scratch_folder.h"

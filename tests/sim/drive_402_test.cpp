@@ -1,6 +1,6 @@
 // The drive's state machine on a plant that follows perfectly, or not at all.
 
-#include "sim/devices/drive_402.h"
+#include "sim/cell/devices/drive_402.h"
 
 #include <gtest/gtest.h>
 

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "shared/base/error.h"
+#include "sim/cell/virtual_arm/environment_offset.h"
 #include "sim/evaluation/quantity.h"
 #include "sim/evaluation/run_all.h"
 #include "sim/evaluation/trial.h"
-#include "sim/virtual_arm/environment_offset.h"
 #include "tests/sim/literal_cell.h"
 
 namespace tenon::sim {

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "sim/bus/virtual_bus.h"
-#include "sim/faults/bus_faults.h"
-#include "sim/faults/fault_spec.h"
-#include "sim/faults/faulty_bus.h"
-#include "sim/faults/frame_sender.h"
+#include "sim/cell/bus/virtual_bus.h"
+#include "sim/cell/faults/bus_faults.h"
+#include "sim/cell/faults/fault_spec.h"
+#include "sim/cell/faults/faulty_bus.h"
+#include "sim/cell/faults/frame_sender.h"
 #include "tests/support/refusal.h"
 
 namespace tenon::sim {

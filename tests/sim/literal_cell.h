@@ -11,7 +11,7 @@
 
 #include "shared/cell/cell.h"
 #include "shared/task/task.h"
-#include "sim/virtual_arm/virtual_cell.h"
+#include "sim/cell/virtual_arm/virtual_cell.h"
 #include "tests/sim/literal_client.h"
 
 namespace tenon::sim {

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include "sim/bus/frame_bits.h"
-#include "sim/bus/virtual_bus.h"
-#include "sim/lockstep/foreign_link.h"
-#include "sim/lockstep/virtual_link.h"
+#include "sim/cell/bus/frame_bits.h"
+#include "sim/cell/bus/virtual_bus.h"
+#include "sim/cell/lockstep/foreign_link.h"
+#include "sim/cell/lockstep/virtual_link.h"
 
 namespace tenon::sim {
 namespace {

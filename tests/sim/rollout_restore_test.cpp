@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "shared/task/ring.h"
-#include "sim/rollout/ode_rollout.h"
+#include "sim/physics/rollout/ode_rollout.h"
 
 namespace tenon::sim {
 namespace {

@@ -1,6 +1,6 @@
 // The SDO server against frames written out by hand from CiA 301.
 
-#include "sim/canopen/sdo_server.h"
+#include "sim/cell/canopen/sdo_server.h"
 
 #include <gtest/gtest.h>
 

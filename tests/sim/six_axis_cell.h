@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "shared/cell/cell.h"
 #include "shared/task/task.h"
@@ -18,7 +19,7 @@ inline Eigen::Quaterniond rpy(double roll_rad, double pitch_rad, double yaw_rad)
          Eigen::AngleAxisd(roll_rad, Vector3::UnitX());
 }
 
-inline Cell six_axis_cell() {
+inline std::vector<Joint> six_joints() {
   constexpr double kHalfTurn_rad = std::numbers::pi;
   constexpr double kQuarterTurn_rad = std::numbers::pi / 2;
   const std::array<Pose, 6> origins = {{
@@ -45,9 +46,7 @@ inline Cell six_axis_cell() {
   const std::array<double, 6> efforts_Nm = {370.0, 370.0, 176.0, 176.0, 41.6, 20.1};
   const std::array<double, 6> stiffnesses_Nmpr = {3e4, 3e4, 2e4, 1.5e4, 6e3, 4e3};
 
-  Cell cell;
-  cell.name = "test";
-  cell.robot.name = "six_axis";
+  std::vector<Joint> joints;
   for (std::size_t i = 0; i < origins.size(); ++i) {
     Joint joint;
     joint.name = "arm_" + std::to_string(i + 1);
@@ -66,8 +65,16 @@ inline Cell six_axis_cell() {
     joint.link.mass_kg = masses_kg[i];
     joint.link.com_m = coms_m[i];
     joint.link.inertia_kgm2 = inertias_kgm2[i].asDiagonal();
-    cell.robot.joints.push_back(joint);
+    joints.push_back(joint);
   }
+  return joints;
+}
+
+inline Cell six_axis_cell() {
+  Cell cell;
+  cell.name = "test";
+  cell.robot.name = "six_axis";
+  cell.robot.joints = six_joints();
   cell.robot.flange.position_m = {0.0, 0.0, 0.10};
   cell.robot.sensor.node = 9;
   cell.robot.sensor.force_per_count_N = 0.01;

@@ -1,6 +1,6 @@
 // A slave node, frame by frame: NMT, heartbeats, PDO mapping and the instant at which a PDO acts.
 
-#include "sim/canopen/slave_node.h"
+#include "sim/cell/canopen/slave_node.h"
 
 #include <gtest/gtest.h>
 

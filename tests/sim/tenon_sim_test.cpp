@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tests/support/child_process.h"
+#include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/sim_process.h"
 
@@ -86,7 +87,7 @@ TEST_F(TenonSimTest, DrawsAWorldFromAnExperimentThatOnlyTheTruthTells) {
   const std::string truth_file = folder.path() / "truth.json";
   SimProcess sim(folder.path(), "2",
                  {"--seed", "11", "--json", truth_file, "--experiment",
-                  TENON_SOURCE_DIR "/sim/experiments/box_on_table.yaml"});
+                  tests::in_tree("sim/experiments/box_on_table.yaml")});
   sim.process().send(SIGINT);
   EXPECT_EQ(sim.process().wait(), 0);
   const auto world = nlohmann::json::parse(std::ifstream(truth_file))["world"];
@@ -115,7 +116,7 @@ TEST_F(TenonSimTest, CarriesOutFaultsOfDevicesAndBus) {
 }
 
 TEST_F(TenonSimTest, ListsTheFaultsWithoutAnyOtherOption) {
-  tests::ChildProcess child(folder.path(), {TENON_SIM_EXE, "--fault", "help"});
+  tests::ChildProcess child(folder.path(), {tests::executable("tenon-sim"), "--fault", "help"});
   EXPECT_EQ(child.wait(), 0);
   for (const char* kind : {"drop", "brake-failure", "torque-loss", "encoder-jump", "bus-off"}) {
     EXPECT_NE(child.out().find(kind), std::string::npos) << kind;
@@ -132,15 +133,19 @@ TEST_F(TenonSimTest, BadInputIsOneLineAndStatusTwo) {
       {"--can", can, "--offset", "x_m=0.1", "--seed", "1"},
       {"--can", can, "--fault", "nonsense"},
       {"--can", can, "--fault", "brake-failure:node=99"},
-      {"--can", can, "--experiment", TENON_SOURCE_DIR "/sim/experiments/box_on_table.yaml"},
+      {"--can", can, "--experiment", tests::in_tree("sim/experiments/box_on_table.yaml")},
       {"--can", can, "--seed", "1", "--experiment", "missing.yaml"},
       {"--can", "nonsense"},
       {},
   };
   for (const std::vector<std::string>& more : bad) {
-    std::vector<std::string> all = {
-        TENON_SIM_EXE, "--cell", tests::gantry_cell_file(), "--task", tests::box_task_file(),
-        "--start",     "2"};
+    std::vector<std::string> all = {tests::executable("tenon-sim"),
+                                    "--cell",
+                                    tests::gantry_cell_file(),
+                                    "--task",
+                                    tests::box_task_file(),
+                                    "--start",
+                                    "2"};
     // The last of an option given twice would be refused as such: replace instead.
     for (std::size_t i = 0; i + 1 < more.size(); i += 2) {
       const auto at = std::find(all.begin(), all.end(), more[i]);

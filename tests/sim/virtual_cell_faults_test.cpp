@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "sim/virtual_arm/virtual_cell.h"
+#include "sim/cell/virtual_arm/virtual_cell.h"
 #include "tests/sim/literal_cell.h"
 #include "tests/sim/six_axis_cell.h"
 #include "tests/support/refusal.h"

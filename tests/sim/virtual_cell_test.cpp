@@ -1,13 +1,13 @@
 // The whole virtual cell, from frames to physics, driven by frames written by hand.
 
-#include "sim/virtual_arm/virtual_cell.h"
+#include "sim/cell/virtual_arm/virtual_cell.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "shared/base/error.h"
-#include "sim/virtual_arm/environment_offset.h"
+#include "sim/cell/virtual_arm/environment_offset.h"
 #include "tests/sim/literal_cell.h"
 
 namespace tenon::sim {

@@ -1,7 +1,7 @@
 // Worlds that differ from what planner and executor believe: how they are drawn, and that each
 // drawn number shows in forces or positions, in the direction that physics says.
 
-#include "sim/virtual_arm/world_draw.h"
+#include "sim/cell/virtual_arm/world_draw.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "shared/base/error.h"
-#include "sim/virtual_arm/truth.h"
+#include "sim/cell/virtual_arm/truth.h"
 #include "tests/sim/literal_cell.h"
 
 namespace tenon::sim {

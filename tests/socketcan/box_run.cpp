@@ -1,10 +1,9 @@
 #include "tests/socketcan/box_run.h"
 
 #include <cstdint>
-#include <cstdlib>
 
-#include "shared/base/error.h"
 #include "shared/config/load.h"
+#include "tests/support/places.h"
 
 namespace tenon::socketcan {
 namespace {
@@ -13,12 +12,12 @@ constexpr std::int64_t kPatience_ns = 100'000'000;
 constexpr int kMoving_cycles = 200;
 
 const Task& task() {
-  static const Task task = load_task(TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml");
+  static const Task task = load_task(tests::in_tree("planner/tasks/box_on_table_2d.yaml"));
   return task;
 }
 
-tests::Lockstep::Options options(sim::Link& link) {
-  tests::Lockstep::Options options;
+tests::WholeRun::Options options(sim::Link& link) {
+  tests::WholeRun::Options options;
   options.start = "1";
   options.offset[0] = 0.02;
   options.offset[1] = 0.015;
@@ -28,16 +27,10 @@ tests::Lockstep::Options options(sim::Link& link) {
 
 }  // namespace
 
-std::string box_plan_file() {
-  const char* file = std::getenv("TENON_BOX_PLAN");
-  if (file == nullptr) throw InputError("TENON_BOX_PLAN names no plan; run tests/guest/run.sh");
-  return file;
-}
-
 BoxRun::BoxRun(CanBus& master, CanBus& devices)
     : link_(master, devices, kPatience_ns),
-      lockstep_(load_cell(TENON_SOURCE_DIR "/hw/cells/gantry3.yaml"), task(),
-                load_plan(box_plan_file()), options(link_)) {}
+      lockstep_(load_cell(tests::in_tree("hw/cells/gantry3.yaml")), task(),
+                load_plan(tests::shared_plan("box_1_gantry3")), options(link_)) {}
 
 bool BoxRun::into_motion() {
   if (!lockstep_.prepare()) return false;

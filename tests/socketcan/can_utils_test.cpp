@@ -13,10 +13,10 @@
 #include "hw/can/candump_log.h"
 #include "hw/can/recording_bus.h"
 #include "hw/can/socketcan_bus.h"
-#include "sim/lockstep/foreign_link.h"
+#include "sim/cell/lockstep/foreign_link.h"
 #include "tests/socketcan/box_run.h"
 #include "tests/socketcan/interfaces.h"
-#include "tests/support/lockstep.h"
+#include "tests/support/whole_run.h"
 
 namespace tenon::socketcan {
 namespace {

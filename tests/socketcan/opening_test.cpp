@@ -7,6 +7,7 @@
 #include "hw/can/open_bus.h"
 #include "tests/socketcan/box_run.h"
 #include "tests/socketcan/interfaces.h"
+#include "tests/support/places.h"
 #include "tests/support/refusal.h"
 
 namespace tenon::socketcan {
@@ -69,10 +70,11 @@ TEST(Sja1000Opening, ATransmitQueueThatDoesNotHoldACycleIsRefused) {
 /// What tenon-exec says when it is to run the gantry on can0; it is to say it with status 2.
 std::string executors_refusal() {
   const tests::ScratchFolder scratch;
-  tests::ChildProcess exec(scratch.path(),
-                           {TENON_EXEC_EXE, "--cell", TENON_SOURCE_DIR "/hw/cells/gantry3.yaml",
-                            "--plan", box_plan_file(), "--can", "socketcan:can0", "--black-box",
-                            scratch.path() / "black-box.csv"});
+  tests::ChildProcess exec(
+      scratch.path(),
+      {tests::executable("tenon-exec"), "--cell", tests::in_tree("hw/cells/gantry3.yaml"), "--plan",
+       tests::shared_plan("box_1_gantry3"), "--can", "socketcan:can0", "--black-box",
+       scratch.path() / "black-box.csv"});
   EXPECT_EQ(exec.wait(), 2);
   return exec.err();
 }

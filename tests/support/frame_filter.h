@@ -7,7 +7,7 @@
 #include <functional>
 #include <utility>
 
-#include "sim/bus/virtual_bus.h"
+#include "sim/cell/bus/virtual_bus.h"
 
 namespace tenon::tests {
 

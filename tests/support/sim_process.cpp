@@ -2,25 +2,29 @@
 
 #include <stdexcept>
 
+#include "tests/support/places.h"
+
 namespace tenon::tests {
 namespace {
 
 std::vector<std::string> command(const std::string& ready_file, const std::string& start,
                                  const std::vector<std::string>& more, const std::string& cell) {
-  std::vector<std::string> all = {
-      TENON_SIM_EXE,  "--cell",        cell.empty() ? gantry_cell_file() : cell,
-      "--task",       box_task_file(), "--start",
-      start,          "--can",         "slcan-listen://127.0.0.1:0",
-      "--ready-file", ready_file};
+  std::vector<std::string> all = {executable("tenon-sim"),
+                                  "--cell",
+                                  cell.empty() ? gantry_cell_file() : cell,
+                                  "--task",
+                                  box_task_file(),
+                                  "--start",
+                                  start,
+                                  "--can",
+                                  "slcan-listen://127.0.0.1:0",
+                                  "--ready-file",
+                                  ready_file};
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 
 }  // namespace
-
-std::string gantry_cell_file() { return TENON_SOURCE_DIR "/hw/cells/gantry3.yaml"; }
-
-std::string box_task_file() { return TENON_SOURCE_DIR "/planner/tasks/box_on_table_2d.yaml"; }
 
 SimProcess::SimProcess(const std::filesystem::path& folder, const std::string& start,
                        const std::vector<std::string>& more, const std::string& cell)

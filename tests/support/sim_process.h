@@ -27,8 +27,4 @@ class SimProcess {
   int port_ = 0;
 };
 
-/// Files of the tree.
-[[nodiscard]] std::string gantry_cell_file();
-[[nodiscard]] std::string box_task_file();
-
 }  // namespace tenon::tests

@@ -17,10 +17,12 @@
 #include "planner/planner.h"
 #include "shared/base/error.h"
 #include "shared/config/load.h"
-#include "sim/rollout/ode_rollout.h"
+#include "shared/task/find_start.h"
+#include "sim/physics/rollout/ode_rollout.h"
 #include "tests/benchmarks/paper_tables/figures.h"
 #include "tests/benchmarks/paper_tables/table.h"
 #include "tests/benchmarks/paper_tables/toy.h"
+#include "tests/support/places.h"
 
 namespace {
 
@@ -88,7 +90,7 @@ Arguments parse(int argc, char** argv) {
   for (int found = 0; (found = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
     if (found == kTable) a.table = one_of("table", optarg, {"I", "II", "III", "IV"});
     if (found == kSetting) a.setting = one_of("setting", optarg, {"paper", "ours"});
-    if (found == kDraws) a.options.validation.draws = whole("draws", optarg, 1, 100'000);
+    if (found == kDraws) a.options.draws = whole("draws", optarg, 1, 100'000);
     if (found == kThreads) a.options.threads = whole("threads", optarg, 1, 256);
     if (found == kJson) a.json = optarg;
     if (found == kHelp) {
@@ -106,24 +108,17 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-const Start& start_named(const Task& task, const std::string& name) {
-  for (const Start& start : task.starts) {
-    if (start.name == name) return start;
-  }
-  throw InputError("task '" + task.name + "' has no start '" + name + "'");
-}
-
 /// Plans every row and prints it as it comes.
 OurTable planned(const PaperTable& paper, const std::string& name,
                  const planner::PlannerOptions& options) {
-  const Task task = load_task(std::string(TENON_SOURCE_DIR "/planner/tasks/") + name);
+  const Task task = load_task(tests::in_tree("planner/tasks/") + name);
   const sim::OdeRollout rollout(task);
   OurTable table{paper, name, task.goal_tolerance_m, task.goal_uncertainty_m2, task.particle_sigmas,
                  {}};
   std::fputs(heading(table).c_str(), stdout);
   for (const PaperRow& row : paper.rows) {
     const planner::PlanReport report =
-        planner::make_plan(task, start_named(task, row.start), rollout, options, now_s);
+        planner::make_plan(task, start_or_first(task, row.start), rollout, options, now_s);
     table.rows.push_back(figures_of(report, task));
     std::fputs(line(table, table.rows.size() - 1).c_str(), stdout);
     std::fflush(stdout);
@@ -138,7 +133,7 @@ int run(const Arguments& a) {
   nlohmann::ordered_json json = {{"threads", a.options.threads},
                                  {"tables", nlohmann::json::array()}};
   if (a.table.empty() || a.table == "I") {
-    const Task toy = load_task(TENON_SOURCE_DIR "/planner/tasks/toy_1d.yaml");
+    const Task toy = load_task(tests::in_tree("planner/tasks/toy_1d.yaml"));
     const std::vector<Expansion> expansions = expansions_of(toy, sim::OdeRollout(toy));
     std::fputs(text_of(expansions).c_str(), stdout);
     json["tables"].push_back(json_of(expansions));

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <set>
 
-#include "planner/attractors.h"
-#include "planner/belief_graph.h"
-#include "planner/mha_search.h"
-#include "planner/plan_builder.h"
+#include "planner/judge/plan_draft.h"
+#include "planner/search/attractors.h"
+#include "planner/search/belief_graph.h"
+#include "planner/search/mha_search.h"
+#include "planner/search_moves.h"
 #include "shared/base/text.h"
 
 namespace tenon::paper_tables {

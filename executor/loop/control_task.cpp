@@ -1,0 +1,230 @@
+#include "executor/loop/control_task.h"
+
+#include <algorithm>
+
+#include "executor/motion/joint_difference.h"
+
+namespace tenon::executor {
+namespace {
+
+constexpr double kNanosecond_s = 1e-9;
+// Drives are at rest when no joint has moved further than this for so many cycles.
+constexpr double kRestMotion = 2e-5;
+constexpr int kRestCycles = 20;
+
+// The task has done what it could, and stands.
+bool came_to_its_end(EndReason reason) {
+  return reason == EndReason::kPlanDone || reason == EndReason::kPlanFailed ||
+         reason == EndReason::kMeasured || reason == EndReason::kNothingMet;
+}
+
+}  // namespace
+
+ControlTask::ControlTask(const Cell& cell, const Parameters& parameters)
+    : cell_(cell),
+      parameters_(parameters),
+      cycle_s_(1e-6 * cell.robot.cycle_us),
+      cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us),
+      kinematics_(cell_),
+      supervision_(cell_, kinematics_, parameters.supervision),
+      sensor_tare_(SensorTare::parameters_for(cell.robot.sensor, parameters.tare_samples)),
+      joints_(cell_.robot, kinematics_) {}
+
+ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& feedback) noexcept {
+  motion_ns_ += cycle_ns_;
+  if (const auto ending = supervision_.update(feedback, following())) take(*ending);
+  if (stop_requested_) take(Ending{.reason = EndReason::kStopRequested});
+  take(act(feedback));
+  if (state_ == State::kWaiting) joints_.rest_at(supervision_.joints());
+  Vector6 velocity = Vector6::Zero();
+  if (moving()) {
+    if (const auto refused = command_joints()) take(*refused);
+    velocity = complete_motion();
+  }
+  supervision_.commanded(velocity);
+  record_.velocity = data_of(velocity);
+  const Command command{request(), joints_.position()};
+  write_record(now_ns, feedback, command);
+  return command;
+}
+
+void ControlTask::report_overruns(std::uint64_t late_cycles) noexcept {
+  take(Ending{.reason = EndReason::kOverruns, .value = static_cast<double>(late_cycles)});
+}
+
+void ControlTask::report_poor_feedback(std::uint64_t incomplete_cycles) noexcept {
+  take(Ending{.reason = EndReason::kFeedbackPoor, .value = static_cast<double>(incomplete_cycles)});
+}
+
+// --- states ---------------------------------------------------------------------------------
+
+// Every change of state is made here. A state can be over as it begins.
+void ControlTask::take(const Turn& turn) {
+  std::optional<Event> event = event_of(turn);
+  while (event) {
+    const State next = next_state(state_, *event);
+    if (next == state_) return;
+    event = event_of(enter_state(next));
+  }
+}
+
+std::optional<Event> ControlTask::event_of(const Turn& turn) {
+  if (const auto* event = std::get_if<Event>(&turn)) return *event;
+  if (const auto* ending = std::get_if<Ending>(&turn)) return remember(*ending);
+  return std::nullopt;
+}
+
+ControlTask::Turn ControlTask::enter_state(State state) {
+  state_ = state;
+  state_since_ns_ = motion_ns_;
+  if (state == State::kTaring) {
+    joints_.rest_at(supervision_.joints());
+    tare_low_ = tare_high_ = supervision_.joints();
+  }
+  if (state == State::kQuickStopping) {
+    rest_at_ = supervision_.joints();
+    rest_cycles_ = 0;
+  }
+  return on_enter(state);
+}
+
+// A fault takes precedence over an orderly end, else the first stays.
+Event ControlTask::remember(const Ending& ending) {
+  on_ending(ending);
+  const bool fault = end_manner(ending.reason) == EndManner::kQuickStop;
+  const bool first = ending_.reason == EndReason::kNone;
+  const bool worse =
+      fault && end_manner(ending_.reason) != EndManner::kQuickStop && state_ < State::kDisabling;
+  if (first || worse) ending_ = ending;
+  if (came_to_its_end(ending.reason)) return Event::kWorkEnded;
+  return fault ? Event::kFault : Event::kStop;
+}
+
+bool ControlTask::following() const {
+  return state_ > State::kWaiting && state_ < State::kDisabling && state_ != State::kQuickStopping;
+}
+
+// After a refused tare the arm holds still: the wrench means nothing.
+bool ControlTask::moving() const {
+  return following() && state_ != State::kTaring && supervision_.tared();
+}
+
+double ControlTask::time_in_state_s() const {
+  return kNanosecond_s * static_cast<double>(motion_ns_ - state_since_ns_);
+}
+
+ArmRequest ControlTask::request() const {
+  switch (state_) {
+    case State::kWaiting:
+    case State::kTaring:
+    case State::kApproaching:
+    case State::kRunning:
+    case State::kStopping:
+    case State::kHolding:
+      return ArmRequest::kEnabled;
+    case State::kQuickStopping:
+      return ArmRequest::kQuickStop;
+    case State::kDisabling:
+    case State::kFinished:
+      return ArmRequest::kDisabled;
+  }
+  return ArmRequest::kDisabled;
+}
+
+// --- what a state does ----------------------------------------------------------------------
+
+ControlTask::Turn ControlTask::act(const ArmFeedback& feedback) {
+  switch (state_) {
+    case State::kWaiting:
+      return wait_for_drives(feedback);
+    case State::kTaring:
+      return tare(feedback);
+    case State::kApproaching:
+      return approach();
+    case State::kRunning:
+      return run(feedback);
+    case State::kStopping:
+      return ramp_down();
+    case State::kQuickStopping:
+      return wait_for_rest();
+    case State::kHolding:
+      if (time_in_state_s() >= parameters_.hold_s) return Event::kHeld;
+      return {};
+    case State::kDisabling:
+      return wait_for_disabled(feedback);
+    case State::kFinished:
+      return {};
+  }
+  return {};
+}
+
+ControlTask::Turn ControlTask::wait_for_drives(const ArmFeedback& feedback) const {
+  if (feedback.state == ArmState::kEnabled && supervision_.known()) return Event::kEnabled;
+  if (time_in_state_s() < parameters_.enable_timeout_s) return {};
+  return Ending{.reason = EndReason::kEnableTimeout, .value = time_in_state_s()};
+}
+
+ControlTask::Turn ControlTask::tare(const ArmFeedback& feedback) {
+  for (std::size_t i = 0; i < cell_.robot.joints.size(); ++i) {
+    tare_low_[i] = std::min(tare_low_[i], supervision_.joints()[i]);
+    tare_high_[i] = std::max(tare_high_[i], supervision_.joints()[i]);
+    const double moved = tare_high_[i] - tare_low_[i];
+    if (moved <= parameters_.tare_motion_max) continue;
+    return Ending{.reason = EndReason::kTareMoving,
+                  .index = static_cast<int>(i),
+                  .value = moved,
+                  .bound = parameters_.tare_motion_max};
+  }
+  if (!feedback.wrench_fresh) return {};
+  switch (sensor_tare_.add(feedback.wrench)) {
+    case SensorTare::Status::kGathering:
+      return {};
+    case SensorTare::Status::kDone:
+      supervision_.tare(sensor_tare_.mean());
+      return Event::kTared;
+    case SensorTare::Status::kUnsteady:
+      return unsteady(sensor_tare_);
+  }
+  return {};
+}
+
+ControlTask::Turn ControlTask::wait_for_rest() {
+  const JointVector& joints = supervision_.joints();
+  const bool moved = largest_difference(joints, rest_at_).value > kRestMotion;
+  rest_cycles_ = moved ? 0 : rest_cycles_ + 1;
+  if (moved) rest_at_ = joints;
+  const bool rested = rest_cycles_ >= kRestCycles || time_in_state_s() >= parameters_.quick_stop_s;
+  return rested ? Turn(Event::kAtRest) : Turn();
+}
+
+ControlTask::Turn ControlTask::wait_for_disabled(const ArmFeedback& feedback) {
+  const bool off =
+      feedback.state == ArmState::kDisabled || feedback.state == ArmState::kUnconfigured;
+  const double patience_s =
+      feedback.state == ArmState::kFault ? parameters_.quick_stop_s : parameters_.disable_timeout_s;
+  if (!off && time_in_state_s() < patience_s) return {};
+  ending_.disable_confirmed = off;
+  return Event::kDisabled;
+}
+
+void ControlTask::write_record(std::int64_t now_ns, const ArmFeedback& feedback,
+                               const Command& command) {
+  CycleRecord& r = record_;
+  r.sequence = sequence_++;
+  r.time_ns = now_ns;
+  r.motion_ns = motion_ns_;
+  r.state = state_;
+  r.arm_state = feedback.state;
+  r.request = command.request;
+  r.end_reason = static_cast<std::uint8_t>(ending_.reason);
+  r.wrench_fresh = supervision_.wrench_usable();
+  r.pose = data_of(supervision_.tool());
+  r.wrench = data_of(supervision_.wrench());
+  r.wrench_raw = data_of(feedback.wrench);
+  r.position = supervision_.joints();
+  r.position_commanded = command.position;
+  r.joints_fresh = feedback.joints_fresh;
+  write_motion(r);
+}
+
+}  // namespace tenon::executor

@@ -1,0 +1,149 @@
+#pragma once
+// A task of the control cycle, from the arm's feedback to its joint setpoints: what all tasks have
+// in common. It waits for the drives, tares the sensor at rest, holds at the end and disables; it
+// watches the arm from the first cycle to the last, and remembers why the run ended
+// (state_machine.h draws the states). How the tool or the joints move in between is the derived
+// class's: the run of a plan (controller.h), the motion of an identification (identification/).
+// That class says what a cycle came to; the state changes here alone.
+//
+// Plain code without clock, bus or thread; time is an argument. Real-time but for the constructor:
+// no allocation, no lock, no throw. One thread.
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "executor/loop/supervision.h"
+#include "executor/motion/joint_command.h"
+#include "executor/motion/tool_kinematics.h"
+#include "executor/record/cycle_record.h"
+#include "executor/sensing/sensor_tare.h"
+#include "executor/states/ending.h"
+#include "executor/states/state_machine.h"
+#include "shared/cell/cell.h"
+#include "shared/ports/arm.h"
+
+namespace tenon::executor {
+
+class ControlTask {
+ public:
+  struct Parameters {
+    int tare_samples = 200;
+    double tare_motion_max = 2e-4;  ///< m or rad that a joint may move while taring
+    double enable_timeout_s = 5.0;
+    double disable_timeout_s = 3.0;
+    double hold_s = 0.2;
+    double quick_stop_s = 0.5;  ///< left to the drives to ramp down
+    Supervision::Parameters supervision;
+  };
+
+  struct Command {
+    ArmRequest request = ArmRequest::kDisabled;
+    JointVector position{};
+  };
+
+  ControlTask(const ControlTask&) = delete;
+  ControlTask& operator=(const ControlTask&) = delete;
+  virtual ~ControlTask() = default;
+
+  /// One cycle. @param now_ns monotonic, for the record; motion goes by the cycle count, so a late
+  /// cycle stretches the motion and never makes it jump.
+  [[nodiscard]] Command cycle(std::int64_t now_ns, const ArmFeedback& feedback) noexcept;
+
+  /// Ends the run: on the user's request, because the loop is too late, or the bus too bad.
+  void request_stop() noexcept { stop_requested_ = true; }
+  void report_overruns(std::uint64_t late_cycles) noexcept;
+  void report_poor_feedback(std::uint64_t incomplete_cycles) noexcept;
+
+  /// Guarded moves take no samples for the next few cycles; the limits on force and torque keep
+  /// watching. To be called where the SYNC of the coming cycle is late, or answers are missing: the
+  /// drives ran out of setpoints, stopped and go on, and the sensor feels the payload's inertia of
+  /// a motion that nobody commanded.
+  void distrust_samples() noexcept {
+    constexpr int kStopAndGo = 3;
+    supervision_.distrust_samples(kStopAndGo + cell_.robot.measurement_delay_cycles);
+  }
+
+  [[nodiscard]] State state() const noexcept { return state_; }
+  [[nodiscard]] bool finished() const noexcept { return state_ == State::kFinished; }
+  [[nodiscard]] const Ending& ending() const noexcept { return ending_; }
+  /// Of the last cycle.
+  [[nodiscard]] const CycleRecord& record() const noexcept { return record_; }
+  [[nodiscard]] const Cell& cell() const noexcept { return cell_; }
+  [[nodiscard]] double cycle_s() const noexcept { return cycle_s_; }
+  /// Largest external force and torque since the tare, N and Nm.
+  [[nodiscard]] double peak_force_N() const noexcept { return supervision_.peak_force_N(); }
+  [[nodiscard]] double peak_torque_Nm() const noexcept { return supervision_.peak_torque_Nm(); }
+
+ protected:
+  /// Copies the cell. @throws InputError for a robot without joints
+  ControlTask(const Cell& cell, const Parameters& parameters);
+
+  /// What a state came to in a cycle: nothing yet, what leads to the next one, or the run's end.
+  using Turn = std::variant<std::monostate, Event, Ending>;
+
+  // What a task adds.
+  /// A state has just begun. What it comes to by that alone is taken in the same cycle.
+  [[nodiscard]] virtual Turn on_enter(State state) = 0;
+  /// One cycle of kApproaching, kRunning and kStopping, which are the task's own.
+  [[nodiscard]] virtual Turn approach() = 0;
+  [[nodiscard]] virtual Turn run(const ArmFeedback& feedback) = 0;
+  [[nodiscard]] virtual Turn ramp_down() = 0;
+  /// The run ends for this reason, in the state that it is still in.
+  virtual void on_ending(const Ending& /*ending*/) {}
+  /// Commands the joints of this cycle, from kApproaching to kHolding.
+  /// @return why they cannot follow; they then stand as they stood
+  [[nodiscard]] virtual std::optional<Ending> command_joints() = 0;
+  /// After that, and after what a refusal led to: joints that have left their way ramp down.
+  /// @return the velocity commanded to the tool, task axes
+  [[nodiscard]] virtual Vector6 complete_motion() = 0;
+  /// Fills in what the common part of a record does not tell.
+  virtual void write_motion(CycleRecord& record) = 0;
+
+  [[nodiscard]] double time_in_state_s() const;
+  [[nodiscard]] std::int64_t motion_ns() const { return motion_ns_; }
+  [[nodiscard]] const ToolKinematics& kinematics() const { return kinematics_; }
+  [[nodiscard]] const Supervision& supervision() const { return supervision_; }
+  [[nodiscard]] JointCommand& joints() { return joints_; }
+  [[nodiscard]] const JointCommand& joints() const { return joints_; }
+
+ private:
+  void take(const Turn& turn);
+  [[nodiscard]] std::optional<Event> event_of(const Turn& turn);
+  [[nodiscard]] Turn enter_state(State state);
+  [[nodiscard]] Event remember(const Ending& ending);
+  [[nodiscard]] bool following() const;
+  [[nodiscard]] bool moving() const;
+  [[nodiscard]] ArmRequest request() const;
+
+  [[nodiscard]] Turn act(const ArmFeedback& feedback);
+  [[nodiscard]] Turn wait_for_drives(const ArmFeedback& feedback) const;
+  [[nodiscard]] Turn tare(const ArmFeedback& feedback);
+  [[nodiscard]] Turn wait_for_rest();
+  [[nodiscard]] Turn wait_for_disabled(const ArmFeedback& feedback);
+  void write_record(std::int64_t now_ns, const ArmFeedback& feedback, const Command& command);
+
+  Cell cell_;
+  Parameters parameters_;
+  double cycle_s_;
+  std::int64_t cycle_ns_;
+  ToolKinematics kinematics_;
+  Supervision supervision_;
+  SensorTare sensor_tare_;
+  JointCommand joints_;
+
+  State state_ = State::kWaiting;
+  std::int64_t state_since_ns_ = 0;
+  std::int64_t motion_ns_ = 0;
+  std::uint64_t sequence_ = 0;
+  bool stop_requested_ = false;
+  Ending ending_;
+
+  JointVector tare_low_{};
+  JointVector tare_high_{};
+  JointVector rest_at_{};  ///< where the joints were when they last moved
+  int rest_cycles_ = 0;
+  CycleRecord record_;
+};
+
+}  // namespace tenon::executor

@@ -1,0 +1,219 @@
+#include "executor/loop/controller.h"
+
+#include <cmath>
+
+#include "executor/motion/joint_difference.h"
+
+namespace tenon::executor {
+namespace {
+
+// Samples above the on-threshold that make a contact during the approach.
+constexpr int kTouchSamples = 2;
+
+}  // namespace
+
+Controller::Controller(const Cell& cell, const DryRun& dry_run, const Parameters& parameters)
+    : ControlTask(cell, parameters),
+      plan_(with_steps(dry_run.plan)),
+      start_(dry_run.start),
+      parameters_(parameters),
+      tool_(plan_.compliance),
+      runner_(plan_) {}
+
+// --- states ---------------------------------------------------------------------------------
+
+ControlTask::Turn Controller::on_enter(State state) {
+  switch (state) {
+    case State::kTaring:
+      commanded_ = supervision().tool();
+      break;
+    case State::kApproaching:
+      return start_approach();
+    case State::kRunning:
+      setpoint_ = {commanded_, Vector6::Zero(), Vector6::Zero()};
+      tool_.rest_at(commanded_);
+      break;
+    case State::kStopping:
+      stop_ = StopProfile(setpoint_, parameters_of_step().speeds);
+      break;
+    case State::kHolding:
+      setpoint_.velocity.setZero();
+      setpoint_.acceleration.setZero();
+      break;
+    case State::kWaiting:
+    case State::kQuickStopping:
+    case State::kDisabling:
+    case State::kFinished:
+      break;
+  }
+  return {};
+}
+
+void Controller::on_ending(const Ending& ending) {
+  const bool no_way_on = end_manner(ending.reason) == EndManner::kJointRamp;
+  if (no_way_on || state() == State::kApproaching) leave_the_tool();
+}
+
+// --- what a state does ----------------------------------------------------------------------
+
+// What keeps the plan from starting here: an axis of the tool, or a joint of an arm that holds the
+// same tool pose in another way than the dry run did.
+std::optional<Ending> Controller::off_start() const {
+  const Vector6 off = displacement_between(plan_.start, commanded_);
+  for (const int first : {0, 3}) {
+    const double bound =
+        first == 0 ? parameters_.start_tolerance_m : parameters_.start_tolerance_rad;
+    const Vector3 part = off.segment<3>(first);
+    if (part.norm() <= bound) continue;
+    int worst = 0;
+    part.cwiseAbs().maxCoeff(&worst);
+    const double wanted = first == 0 ? plan_.start.position_m[worst]
+                                     : rotation_vector(plan_.start.orientation)[worst];
+    return Ending{.reason = EndReason::kNotAtStart,
+                  .index = first + worst,
+                  .value = wanted + part[worst],
+                  .bound = bound,
+                  .wanted = wanted};
+  }
+  if (!start_) return std::nullopt;
+  const JointDifference worst = largest_difference(joints().position(), *start_);
+  if (worst.value <= parameters_.start_tolerance_joint) return std::nullopt;
+  const auto joint = static_cast<std::size_t>(worst.joint);
+  return Ending{.reason = EndReason::kOtherBranch,
+                .index = worst.joint,
+                .value = joints().position()[joint],
+                .bound = parameters_.start_tolerance_joint,
+                .wanted = (*start_)[joint]};
+}
+
+ControlTask::Turn Controller::start_approach() {
+  const std::optional<Ending> off = off_start();
+  if (!off) return Event::kAtStart;
+  if (!parameters_.go_to_start || !start_) return *off;
+  // Within contact speed all the way: its impact is what the plan's check has found harmless.
+  approach_ = JointMove(joints().position(), *start_, cell().robot, kinematics(),
+                        parameters_of_step().speeds);
+  touch_samples_ = 0;
+  return {};
+}
+
+ControlTask::Turn Controller::approach() {
+  const int axis = touching_axis(SerialChain::kAllAxes);
+  if (supervision().wrench_usable()) touch_samples_ = axis < 0 ? 0 : touch_samples_ + 1;
+  if (touch_samples_ >= kTouchSamples) {
+    return Ending{.reason = EndReason::kContactOnApproach,
+                  .index = axis,
+                  .value = supervision().wrench()[axis],
+                  .bound = on_threshold(axis)};
+  }
+  const bool arrived = time_in_state_s() >= approach_.duration_s() + parameters_.hold_s;
+  return arrived ? Turn(Event::kAtStart) : Turn();
+}
+
+ControlTask::Turn Controller::run(const ArmFeedback& /*feedback*/) {
+  GuardedMove::Input input;
+  input.time_ns = motion_ns();
+  input.pose = tool_.seen(supervision().tool());
+  input.wrench = supervision().wrench();
+  input.wrench_fresh = supervision().wrench_usable();
+  const GuardedMove::Output output = runner_.update(input);
+  setpoint_ = output.setpoint;
+  phase_ = output.phase;
+  seen_ = input.pose;
+  switch (runner_.status()) {
+    case PlanRunner::Status::kRunning:
+      return {};
+    case PlanRunner::Status::kDone:
+      return Ending{.reason = EndReason::kPlanDone};
+    case PlanRunner::Status::kFailed: {
+      const StepReport& last = runner_.report(runner_.report_count() - 1);
+      return Ending{.reason = EndReason::kPlanFailed,
+                    .index = static_cast<int>(last.step),
+                    .transition = last.transition};
+    }
+  }
+  return {};
+}
+
+ControlTask::Turn Controller::ramp_down() {
+  // Into a contact there is no ramping.
+  if (touching_axis(tool_left_ ? SerialChain::kAllAxes : plan_.compliance.compliant_axes) >= 0) {
+    yield_here();
+    return Event::kAtRest;
+  }
+  if (tool_left_) return joints().at_rest() ? Turn(Event::kAtRest) : Turn();
+  // The profile begins with the setpoint of the cycle before.
+  const double time_s = time_in_state_s() + cycle_s();
+  setpoint_ = stop_.at(time_s);
+  return time_s >= stop_.duration_s() ? Turn(Event::kAtRest) : Turn();
+}
+
+// --- giving out -----------------------------------------------------------------------------
+
+double Controller::on_threshold(int axis) const {
+  const ContactThresholds& on = parameters_of_step().thresholds;
+  return axis < 3 ? on.force_on_N : on.torque_on_Nm;
+}
+
+// One of the axes that is above its on-threshold, or -1.
+int Controller::touching_axis(std::uint8_t axes) const {
+  for (int axis = 0; axis < 6; ++axis) {
+    if ((axes >> axis & 1U) == 0) continue;
+    if (std::abs(supervision().wrench()[axis]) > on_threshold(axis)) return axis;
+  }
+  return -1;
+}
+
+// The joints ramp down from where they are.
+void Controller::leave_the_tool() {
+  if (tool_left_) return;
+  tool_left_ = true;
+  joints().stop();
+}
+
+// The setpoint is where the tool is, and the tool compliant.
+void Controller::yield_here() {
+  if (tool_left_) {
+    joints().rest_at(joints().position());
+    tool_.rest_at(commanded_);
+    tool_left_ = false;
+  }
+  setpoint_ = {tool_.commanded().pose, Vector6::Zero(), Vector6::Zero()};
+}
+
+std::optional<Ending> Controller::command_joints() {
+  if (tool_left_) return std::nullopt;
+  if (state() == State::kApproaching) return joints().follow(approach_.at(time_in_state_s()));
+  std::optional<Ending> refused =
+      joints().follow(tool_.update(setpoint_, supervision().wrench(), cycle_s()).pose);
+  if (refused && state() == State::kRunning) refused->step = static_cast<int>(runner_.step());
+  return refused;
+}
+
+Vector6 Controller::complete_motion() {
+  if (tool_left_) {
+    joints().ramp();
+  } else if (state() != State::kApproaching) {
+    commanded_ = tool_.commanded().pose;
+    return tool_.commanded().velocity;
+  }
+  commanded_ = kinematics().tool(joints().position());
+  setpoint_ = {commanded_, Vector6::Zero(), Vector6::Zero()};
+  return kinematics().twist(joints().position(), joints().velocity());
+}
+
+void Controller::write_motion(CycleRecord& r) {
+  r.moving = seen_.has_value();
+  r.move_started = r.moving && runner_.move_started();
+  if (seen_) r.pose = data_of(*seen_);
+  seen_.reset();
+  r.phase = phase_;
+  r.step = r.moving ? static_cast<std::int32_t>(runner_.step()) : -1;
+  r.steps_done = static_cast<std::uint32_t>(runner_.report_count());
+  r.signature_before = runner_.signature_before().bits;
+  r.signature = runner_.signature().bits;
+  r.setpoint = data_of(setpoint_.pose);
+  r.commanded = data_of(commanded_);
+}
+
+}  // namespace tenon::executor

@@ -1,0 +1,100 @@
+#include "executor/loop/supervision.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tenon::executor {
+
+Supervision::Supervision(const Cell& cell, const ToolKinematics& kinematics,
+                         const Parameters& parameters)
+    : cell_(cell), kinematics_(kinematics), parameters_(parameters), wrench_(cell) {}
+
+std::optional<Ending> Supervision::update(const ArmFeedback& feedback, bool following) {
+  take_joints(feedback);
+  const std::optional<Ending> sensor = take_wrench(feedback);
+  const std::optional<Ending> arm = watch_arm(feedback, following);
+  const std::optional<Ending> force = watch_force(feedback);
+  if (sensor) return sensor;
+  return arm ? arm : force;
+}
+
+void Supervision::tare(const Vector6& mean_raw) {
+  wrench_.tare(mean_raw, tool_);
+  tared_ = true;
+}
+
+void Supervision::take_joints(const ArmFeedback& feedback) {
+  bool all = true;
+  for (std::size_t i = 0; i < cell_.robot.joints.size(); ++i) {
+    const bool fresh =
+        (feedback.joints_fresh >> i & 1U) != 0 && std::isfinite(feedback.position[i]);
+    all = all && fresh;
+    misses_[i] = fresh ? 0 : misses_[i] + 1;
+    if (fresh) joints_[i] = feedback.position[i];
+  }
+  known_ = known_ || all;
+  if (known_) tool_ = kinematics_.tool(joints_);
+}
+
+std::optional<Ending> Supervision::take_wrench(const ArmFeedback& feedback) {
+  wrench_age_s_ = feedback.wrench_fresh ? 0.0 : wrench_age_s_ + 1e-6 * cell_.robot.cycle_us;
+  wrench_usable_ = feedback.wrench_fresh && distrusted_cycles_ == 0;
+  if (distrusted_cycles_ > 0) --distrusted_cycles_;
+  if (!feedback.wrench_fresh || !known_) return std::nullopt;
+  switch (wrench_.update(feedback.wrench, tool_)) {
+    case WrenchEstimator::Status::kGood:
+      return std::nullopt;
+    case WrenchEstimator::Status::kSaturated: {
+      const int axis = wrench_.axis();
+      const ForceTorqueSensor& sensor = cell_.robot.sensor;
+      return Ending{.reason = EndReason::kSensorSaturated,
+                    .index = axis,
+                    .value = feedback.wrench[axis],
+                    .bound = axis < 3 ? sensor.force_range_N : sensor.torque_range_Nm};
+    }
+    case WrenchEstimator::Status::kNotFinite:
+      return Ending{.reason = EndReason::kSensorNotFinite};
+  }
+  return std::nullopt;
+}
+
+std::optional<Ending> Supervision::watch_arm(const ArmFeedback& feedback, bool following) const {
+  if (feedback.state == ArmState::kFault) {
+    return Ending{.reason = EndReason::kArmFault, .arm_fault = feedback.fault};
+  }
+  if (!following) return std::nullopt;
+  if (feedback.state != ArmState::kEnabled) {
+    return Ending{.reason = EndReason::kArmNotEnabled, .index = static_cast<int>(feedback.state)};
+  }
+  for (std::size_t i = 0; i < cell_.robot.joints.size(); ++i) {
+    if (misses_[i] <= parameters_.feedback_misses_max) continue;
+    return Ending{.reason = EndReason::kFeedbackMissing,
+                  .index = static_cast<int>(i),
+                  .value = static_cast<double>(misses_[i]),
+                  .bound = static_cast<double>(parameters_.feedback_misses_max)};
+  }
+  if (wrench_age_s_ > parameters_.wrench_age_max_s) {
+    return Ending{.reason = EndReason::kWrenchMissing,
+                  .value = wrench_age_s_,
+                  .bound = parameters_.wrench_age_max_s};
+  }
+  return std::nullopt;
+}
+
+std::optional<Ending> Supervision::watch_force(const ArmFeedback& feedback) {
+  if (!tared_ || !feedback.wrench_fresh) return std::nullopt;
+  const double force_N = wrench_.external().head<3>().norm();
+  const double torque_Nm = wrench_.external().tail<3>().norm();
+  peak_force_N_ = std::max(peak_force_N_, force_N);
+  peak_torque_Nm_ = std::max(peak_torque_Nm_, torque_Nm);
+  if (force_N > cell_.force_fault_N) {
+    return Ending{.reason = EndReason::kForceFault, .value = force_N, .bound = cell_.force_fault_N};
+  }
+  if (torque_Nm > cell_.torque_fault_Nm) {
+    return Ending{
+        .reason = EndReason::kTorqueFault, .value = torque_Nm, .bound = cell_.torque_fault_Nm};
+  }
+  return std::nullopt;
+}
+
+}  // namespace tenon::executor

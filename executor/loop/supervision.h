@@ -1,0 +1,75 @@
+#pragma once
+// Takes in what the arm says and watches it: joints that answer, a sensor that is sound and fresh,
+// a force within the cell's bounds. What ends a run from outside comes back as an Ending. It
+// commands nothing. Real-time, one thread, no allocation.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "executor/motion/tool_kinematics.h"
+#include "executor/sensing/wrench_estimator.h"
+#include "executor/states/ending.h"
+#include "shared/cell/cell.h"
+#include "shared/ports/arm.h"
+
+namespace tenon::executor {
+
+class Supervision {
+ public:
+  struct Parameters {
+    int feedback_misses_max = 10;  ///< cycles in a row
+    double wrench_age_max_s = 0.05;
+  };
+
+  /// @param kinematics outlives this
+  Supervision(const Cell& cell, const ToolKinematics& kinematics, const Parameters& parameters);
+
+  /// Once a cycle. @param following the drives are on and follow setpoints
+  /// @return what ends the run
+  [[nodiscard]] std::optional<Ending> update(const ArmFeedback& feedback, bool following);
+
+  /// For so many cycles guarded moves take no samples; the bounds on force and torque go on.
+  void distrust_samples(int cycles) { distrusted_cycles_ = cycles; }
+  /// From now on the mean raw reading means no contact, and the force is watched.
+  void tare(const Vector6& mean_raw);
+  /// Once a cycle, after update(): the velocity commanded to the tool, task axes.
+  void commanded(const Vector6& velocity) { wrench_.commanded(velocity); }
+
+  /// Every joint has answered at least once.
+  [[nodiscard]] bool known() const { return known_; }
+  [[nodiscard]] bool tared() const { return tared_; }
+  [[nodiscard]] const JointVector& joints() const { return joints_; }
+  [[nodiscard]] const Pose& tool() const { return tool_; }
+  /// External wrench, task axes at the tool tip; of the last good sample.
+  [[nodiscard]] const Vector6& wrench() const { return wrench_.external(); }
+  /// It is a fresh sample, and guarded moves may see it.
+  [[nodiscard]] bool wrench_usable() const { return wrench_usable_; }
+  /// Largest external force and torque since the tare, N and Nm.
+  [[nodiscard]] double peak_force_N() const { return peak_force_N_; }
+  [[nodiscard]] double peak_torque_Nm() const { return peak_torque_Nm_; }
+
+ private:
+  void take_joints(const ArmFeedback& feedback);
+  [[nodiscard]] std::optional<Ending> take_wrench(const ArmFeedback& feedback);
+  [[nodiscard]] std::optional<Ending> watch_arm(const ArmFeedback& feedback, bool following) const;
+  [[nodiscard]] std::optional<Ending> watch_force(const ArmFeedback& feedback);
+
+  Cell cell_;
+  const ToolKinematics& kinematics_;
+  Parameters parameters_;
+  WrenchEstimator wrench_;
+
+  JointVector joints_{};
+  std::array<int, kMaxJoints> misses_{};
+  bool known_ = false;
+  Pose tool_;
+  bool tared_ = false;
+  double wrench_age_s_ = 0.0;
+  int distrusted_cycles_ = 0;
+  bool wrench_usable_ = false;
+  double peak_force_N_ = 0.0;
+  double peak_torque_Nm_ = 0.0;
+};
+
+}  // namespace tenon::executor

@@ -1,0 +1,78 @@
+#include "executor/main_exec_options.h"
+
+#include <CLI/CLI.hpp>
+#include <vector>
+
+#include "executor/telemetry/lcm_url.h"
+#include "shared/base/error.h"
+#include "shared/config/command_line.h"
+#include "shared/config/load.h"
+
+namespace tenon::executor {
+namespace {
+
+// What is run; the two are exclusive.
+void add_work(CLI::App& app, Options& options) {
+  std::vector<CLI::Option*> of_a_plan = {
+      app.add_option("--plan", options.plan, "plan file (.tnp)"),
+      app.add_flag("--dry-run", options.dry_run,
+                   "only go through the plan with the cell's arm in mind; needs no --can"),
+      app.add_flag("--go-to-start", options.go_to_start, "move to the plan's start first"),
+      app.add_option("--trace", options.trace, "inputs of every guarded move, to replay")};
+  app.add_option("--can", options.can, "socketcan:can0, slcan:/dev/ttyACM0 or slcan://HOST:PORT");
+  app.add_option("--rt", options.rt, "real time: require, prefer or off")
+      ->check(CLI::IsMember({"require", "prefer", "off"}))
+      ->capture_default_str();
+  app.add_option("--cpu", options.cpu, "processor for the control loop")
+      ->check(CLI::Range(0, 1023));
+  CLI::Option* payload = app.add_flag("--identify-payload", options.identify_payload,
+                                      "instead of a plan: payload and sensor bias, in some poses");
+  CLI::Option* contact = app.add_option(
+      "--identify-contact", options.identify_contact,
+      "instead of a plan: stiffness and lag at what stands along x, -x, y, -y, z or -z");
+  contact->excludes(payload);
+  for (CLI::Option* option : of_a_plan) option->excludes(payload)->excludes(contact);
+}
+
+void add_outputs(CLI::App& app, Options& options) {
+  app.add_option("--lcm-url", options.lcm_url, "where telemetry goes, or none")
+      ->capture_default_str();
+  app.add_option("--log", options.log, "telemetry log for lcm-logplayer");
+  app.add_option("--can-log", options.can_log, "frames in candump's format");
+  app.add_option("--json", options.json, "result, - for standard output");
+  app.add_option("--black-box", options.black_box, "the last second as CSV, after a fault")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+Options parse_options(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Executes a plan of guarded moves on an arm over CAN."};
+  app.footer(
+      "Example:\n  tenon-exec --cell hw/cells/gantry3.yaml --plan plan.tnp \\\n"
+      "             --can slcan://127.0.0.1:29536 --log run.lcmlog --json result.json\n\n"
+      "Exit status: 0 the plan is done (--dry-run: can be) or something identified, 1 it failed or "
+      "was stopped, 2 bad input.");
+  app.set_version_flag("--version", TENON_VERSION);
+  app.add_option("--cell", options.cell, "cell file (YAML)")->required();
+  add_work(app, options);
+  add_outputs(app, options);
+  parse(app, argc, argv);
+  return options;
+}
+
+void check_outputs(const Options& options) {
+  if (!options.dry_run) {
+    if (options.can.empty()) throw InputError("--can is required, but for --dry-run; see --help");
+    if (options.can.rfind("slcan-listen:", 0) == 0) {
+      throw InputError("--can " + options.can +
+                       ": listens for an arm that would have to call; give slcan://HOST:PORT");
+    }
+    if (options.lcm_url != "none") check_lcm_url(options.lcm_url);
+    check_writable(options.black_box);
+  }
+  if (!options.json.empty() && options.json != "-") check_writable(options.json);
+}
+
+}  // namespace tenon::executor

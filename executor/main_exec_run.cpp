@@ -1,0 +1,139 @@
+#include "executor/main_exec_run.h"
+
+#include <cstdio>
+#include <exception>
+#include <thread>
+#include <utility>
+
+#include "executor/loop/monotonic_clock.h"
+#include "executor/loop/realtime.h"
+#include "executor/main_exec_output.h"
+#include "hw/arm/canopen_arm.h"
+#include "hw/arm/describe_fault.h"
+#include "hw/arm/frame_set.h"
+#include "hw/can/candump_log.h"
+#include "hw/can/open_bus.h"
+#include "hw/can/recording_bus.h"
+#include "shared/base/error.h"
+
+namespace tenon::executor {
+
+/// The frames that pass on the bus, written on the recorder's thread.
+class CanLog : public RecordConsumer {
+ public:
+  explicit CanLog(const std::string& file) : log_(file) {}
+  void consume(const CycleRecord& /*record*/) override { drain(); }
+  void drain() { log_.drain(ring_); }
+  [[nodiscard]] hw::CanRecordRing& ring() { return ring_; }
+
+ private:
+  hw::CanRecordRing ring_;
+  hw::CandumpLog log_;
+};
+
+namespace {
+
+void ask_for_real_time(const Options& options) {
+  if (options.rt == "off") return;
+  RealtimeParameters parameters;
+  parameters.cpu = options.cpu;
+  const std::vector<std::string> missing = enter_realtime(parameters);
+  if (options.rt == "require" && !missing.empty()) {
+    std::string all = "--rt require";
+    const char* separator = ": ";
+    for (const std::string& line : missing) {
+      all += separator + line;
+      separator = "; ";
+    }
+    throw InputError(all);
+  }
+  for (const std::string& line : missing) std::fprintf(stderr, "real time: %s\n", line.c_str());
+}
+
+std::vector<std::shared_ptr<lcm::LCM>> outputs(const Options& options) {
+  std::vector<std::string> warnings;
+  auto opened = open_telemetry(options.lcm_url, options.log, warnings);
+  for (const std::string& line : warnings) std::fprintf(stderr, "%s\n", line.c_str());
+  return opened;
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> named(const hw::CanopenArm::Counters& c) {
+  return {{"joint_frames_missing", c.joint_frames_missing},
+          {"wrenches_missing", c.wrenches_missing},
+          {"wrench_halves_torn", c.wrench_halves_torn},
+          {"late_frames", c.late_frames},
+          {"malformed_frames", c.malformed_frames},
+          {"unexpected_frames", c.unexpected_frames},
+          {"emergencies", c.emergencies},
+          {"send_failures", c.send_failures},
+          {"invalid_setpoints", c.invalid_setpoints}};
+}
+
+}  // namespace
+
+TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
+                 const std::atomic<bool>& stop)
+    : options_(options),
+      task_(task),
+      stop_(stop),
+      bus_(hw::open_bus(options.can, robot().bitrate_bps, hw::master_frames(robot()))),
+      can_log_(options.can_log.empty() ? nullptr : std::make_unique<CanLog>(options.can_log)),
+      logged_bus_(can_log_ ? std::make_unique<hw::RecordingBus>(*bus_, can_log_->ring()) : nullptr),
+      arm_(std::make_unique<hw::CanopenArm>(
+          robot(), logged_bus_ ? static_cast<CanBus&>(*logged_bus_) : *bus_)),
+      recorder_(std::make_unique<Recorder>()),
+      runner_(*arm_, task, recorder_.get(), {}),
+      telemetry_(outputs(options), robot().joints.size(), steps, *recorder_) {
+  recorder_->add(telemetry_);
+  if (can_log_) recorder_->add(*can_log_);
+}
+
+TaskRun::~TaskRun() = default;
+
+void TaskRun::run() {
+  recorder_->start();
+  std::exception_ptr failure;
+  std::thread real_time([&] {
+    try {
+      run_arm();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  });
+  real_time.join();
+  recorder_->stop();
+  if (can_log_) can_log_->drain();
+  if (failure) std::rethrow_exception(failure);
+}
+
+// Everything that lives on the real-time thread: real time, the drives' bring-up, the run. Asked to
+// stop during the bring-up, the run ends before anything is enabled.
+void TaskRun::run_arm() {
+  ask_for_real_time(options_);
+  constexpr std::int64_t kPoll_ns = 1'000'000;
+  std::int64_t now_ns = MonotonicClock::now_ns();
+  while (!stop_.load(std::memory_order_relaxed) && !arm_->prepare(now_ns)) {
+    if (arm_->state() == ArmState::kFault) throw InputError(hw::describe(arm_->fault(), robot()));
+    arm_->wait(kPoll_ns);
+    now_ns = MonotonicClock::now_ns();
+  }
+  runner_.run(stop_);
+}
+
+std::string TaskRun::arm_fault_text() const {
+  return hw::describe(task_.ending().arm_fault, robot());
+}
+
+int TaskRun::conclude(RunResult result) {
+  result.arm_counters = named(arm_->counters());
+  telemetry_.publish_summary(result, task_.record());
+  print_closing(result);
+  if (result.ended_badly()) {
+    runner_.black_box().write_csv(options_.black_box);
+    std::fprintf(stderr, "tenon-exec: the last second is in %s\n", options_.black_box.c_str());
+  }
+  write_json(options_.json, to_json(result, task_.cell()));
+  return result.exit_code;
+}
+
+}  // namespace tenon::executor

@@ -1,0 +1,71 @@
+#pragma once
+// One task on an arm over CAN: the bus, the loop on a thread of its own, and everything that writes
+// along.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "executor/loop/control_task.h"
+#include "executor/loop/cycle_runner.h"
+#include "executor/main_exec_options.h"
+#include "executor/motion/plan_runner.h"
+#include "executor/telemetry/recorder.h"
+#include "executor/telemetry/run_result.h"
+#include "executor/telemetry/telemetry.h"
+#include "shared/ports/can_bus.h"
+
+namespace tenon::hw {
+class CanopenArm;
+class RecordingBus;
+}  // namespace tenon::hw
+
+namespace tenon::executor {
+
+class CanLog;
+
+class TaskRun {
+ public:
+  /// Opens the bus and whatever is written to. All arguments outlive it.
+  /// @param steps of the plan that the task runs, null where it runs none
+  /// @param stop set by anyone to end the run in good order
+  /// @throws InputError where something cannot be opened
+  TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
+          const std::atomic<bool>& stop);
+  ~TaskRun();
+  TaskRun(const TaskRun&) = delete;
+  TaskRun& operator=(const TaskRun&) = delete;
+
+  /// Before run(); outlives it.
+  void add(RecordConsumer& consumer) { recorder_->add(consumer); }
+
+  /// To the end of the task. @throws what the bring-up throws
+  void run();
+
+  [[nodiscard]] const CycleRunner& runner() const { return runner_; }
+  [[nodiscard]] std::uint64_t records_dropped() const { return recorder_->dropped(); }
+  /// What the arm's fault was, for people.
+  [[nodiscard]] std::string arm_fault_text() const;
+
+  /// Tells what came of it, everywhere. @return the exit status
+  int conclude(RunResult result);
+
+ private:
+  void run_arm();
+  [[nodiscard]] const Robot& robot() const { return task_.cell().robot; }
+
+  const Options& options_;
+  ControlTask& task_;
+  const std::atomic<bool>& stop_;
+  std::unique_ptr<CanBus> bus_;
+  std::unique_ptr<CanLog> can_log_;
+  std::unique_ptr<hw::RecordingBus> logged_bus_;
+  std::unique_ptr<hw::CanopenArm> arm_;
+  std::unique_ptr<Recorder> recorder_;
+  CycleRunner runner_;
+  Telemetry telemetry_;
+};
+
+}  // namespace tenon::executor

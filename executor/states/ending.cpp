@@ -1,0 +1,275 @@
+#include "executor/states/ending.h"
+
+#include <cmath>
+
+#include "shared/base/text.h"
+
+namespace tenon::executor {
+namespace {
+
+const char* wrench_unit(int axis) { return axis < 3 ? "N" : "Nm"; }
+
+Joint joint_of(const Cell& cell, int index) {
+  const auto i = static_cast<std::size_t>(index);
+  if (index >= 0 && i < cell.robot.joints.size()) return cell.robot.joints[i];
+  Joint none;
+  none.name = "?";
+  return none;
+}
+
+std::string during(const Ending& ending) {
+  return ending.step < 0 ? "" : format("step %d: ", ending.step);
+}
+
+const char* to_string(ArmState state) {
+  switch (state) {
+    case ArmState::kUnconfigured:
+      return "unconfigured";
+    case ArmState::kDisabled:
+      return "disabled";
+    case ArmState::kEnabling:
+      return "enabling";
+    case ArmState::kEnabled:
+      return "enabled";
+    case ArmState::kStopping:
+      return "stopping";
+    case ArmState::kFault:
+      return "fault";
+  }
+  return "?";
+}
+
+// What is said of an axis or a joint that does not stand where the plan begins.
+std::string off_start(const char* unit, const Ending& e, const Plan& plan) {
+  return format(
+      " is at %.4f %s, the plan's start '%s' has it at %.4f, must be within %.3g: move it there or "
+      "use --go-to-start",
+      e.value, unit, plan.start_name.c_str(), e.wanted, e.bound);
+}
+
+std::string unreachable(const Ending& e) {
+  return during(e) +
+         format("the commanded tool pose is out of the robot's reach by %.3g m or rad", e.value);
+}
+
+std::string joint_limit(const Ending& e, const Joint& joint) {
+  return during(e) + "joint " + joint.name +
+         format(" would come to rest at %.6g %s, beyond its limit %.6g", e.value, joint_unit(joint),
+                e.bound);
+}
+
+std::string joint_speed(const Ending& e, const Joint& joint) {
+  return during(e) + "joint " + joint.name +
+         format(" would move at %.4g %s/s, at most %.4g", e.value, joint_unit(joint), e.bound);
+}
+
+std::string tare_moving(const Ending& e, const Joint& joint) {
+  return "joint " + joint.name +
+         format(" moved by %.3g %s while taring, at most %.3g", e.value, joint_unit(joint),
+                e.bound);
+}
+
+std::string tare_unsteady(const Ending& e) {
+  return format("sensor not steady while taring: standard deviation of %s is %.3g %s, at most %.3g",
+                axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
+}
+
+std::string touched(const Ending& e) {
+  return format("touched something on the way to the start: %s reads %.3g %s, at most %.3g",
+                axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
+}
+
+std::string sensor_saturated(const Ending& e) {
+  return format("sensor axis %s reads %.4g %s, its range ends at %.4g", axis_name(e.index), e.value,
+                wrench_unit(e.index), e.bound);
+}
+
+std::string feedback_missing(const Ending& e, const Joint& joint) {
+  return "joint " + joint.name +
+         format(" did not answer for %.0f cycles in a row, at most %.0f", e.value, e.bound);
+}
+
+std::string arm_fault(const ArmFault& fault, const std::string& text) {
+  if (!text.empty()) return "arm: " + text;
+  return format("arm: fault kind %d, node %d, object %06x, code %x", static_cast<int>(fault.kind),
+                static_cast<int>(fault.node), static_cast<unsigned>(fault.object),
+                static_cast<unsigned>(fault.code));
+}
+
+std::string nothing_met(const Ending& e) {
+  return format("nothing was met within %g m along %c%s", std::abs(e.value),
+                e.value < 0.0 ? '-' : '+', axis_name(e.index));
+}
+
+}  // namespace
+
+const char* to_string(EndReason reason) {
+  switch (reason) {
+    case EndReason::kNone:
+      return "none";
+    case EndReason::kPlanDone:
+      return "plan_done";
+    case EndReason::kPlanFailed:
+      return "plan_failed";
+    case EndReason::kStopRequested:
+      return "stop_requested";
+    case EndReason::kNotAtStart:
+      return "not_at_start";
+    case EndReason::kTareUnsteady:
+      return "tare_unsteady";
+    case EndReason::kTareMoving:
+      return "tare_moving";
+    case EndReason::kContactOnApproach:
+      return "contact_on_approach";
+    case EndReason::kUnreachable:
+      return "unreachable";
+    case EndReason::kJointLimit:
+      return "joint_limit";
+    case EndReason::kJointSpeed:
+      return "joint_speed";
+    case EndReason::kForceFault:
+      return "force_fault";
+    case EndReason::kTorqueFault:
+      return "torque_fault";
+    case EndReason::kSensorSaturated:
+      return "sensor_saturated";
+    case EndReason::kSensorNotFinite:
+      return "sensor_not_finite";
+    case EndReason::kArmFault:
+      return "arm_fault";
+    case EndReason::kArmNotEnabled:
+      return "arm_not_enabled";
+    case EndReason::kEnableTimeout:
+      return "enable_timeout";
+    case EndReason::kFeedbackMissing:
+      return "feedback_missing";
+    case EndReason::kWrenchMissing:
+      return "wrench_missing";
+    case EndReason::kOverruns:
+      return "overruns";
+    case EndReason::kOtherBranch:
+      return "other_branch";
+    case EndReason::kFeedbackPoor:
+      return "feedback_poor";
+    case EndReason::kMeasured:
+      return "measured";
+    case EndReason::kNothingMet:
+      return "nothing_met";
+  }
+  return "?";
+}
+
+EndManner end_manner(EndReason reason) {
+  switch (reason) {
+    case EndReason::kNone:
+    case EndReason::kPlanDone:
+    case EndReason::kPlanFailed:
+    case EndReason::kNotAtStart:
+    case EndReason::kOtherBranch:
+    case EndReason::kTareUnsteady:
+    case EndReason::kTareMoving:
+    case EndReason::kEnableTimeout:
+    case EndReason::kMeasured:
+    case EndReason::kNothingMet:
+      return EndManner::kHold;
+    case EndReason::kStopRequested:
+    case EndReason::kContactOnApproach:
+      return EndManner::kToolRamp;
+    case EndReason::kUnreachable:
+    case EndReason::kJointLimit:
+    case EndReason::kJointSpeed:
+      return EndManner::kJointRamp;
+    case EndReason::kForceFault:
+    case EndReason::kTorqueFault:
+    case EndReason::kSensorSaturated:
+    case EndReason::kSensorNotFinite:
+    case EndReason::kArmFault:
+    case EndReason::kArmNotEnabled:
+    case EndReason::kFeedbackMissing:
+    case EndReason::kWrenchMissing:
+    case EndReason::kOverruns:
+    case EndReason::kFeedbackPoor:
+      return EndManner::kQuickStop;
+  }
+  return EndManner::kQuickStop;
+}
+
+std::string describe(const Transition& transition) {
+  const auto bit = static_cast<std::uint16_t>(transition.index < 0 ? 0 : 1U << transition.index);
+  switch (transition.deviation) {
+    case Deviation::kNone:
+      return "as planned";
+    case Deviation::kUnexpectedOutcome:
+      return "the plan has no way on from this outcome";
+    case Deviation::kTravelOutside:
+      return format("travelled along %s outside what validation saw", axis_name(transition.index));
+    case Deviation::kContactMissing:
+      return "contact " + tenon::to_string(ContactSignature{bit}) +
+             " is missing, validation always had it";
+    case Deviation::kContactUnforeseen:
+      return "contact " + tenon::to_string(ContactSignature{bit}) + " was never seen in validation";
+  }
+  return "?";
+}
+
+std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
+                     const std::string& arm_fault_text) {
+  const Joint joint = joint_of(cell, e.index);
+  switch (e.reason) {
+    case EndReason::kNone:
+      return "still running";
+    case EndReason::kPlanDone:
+      return "plan '" + plan.task_name + "' done";
+    case EndReason::kPlanFailed:
+      return format("step %d: ", e.index) + describe(e.transition);
+    case EndReason::kStopRequested:
+      return "stopped on request";
+    case EndReason::kNotAtStart:
+      return format("the tool's %s", axis_name(e.index)) + off_start(axis_unit(e.index), e, plan);
+    case EndReason::kOtherBranch:
+      return "joint " + joint.name + off_start(joint_unit(joint), e, plan);
+    case EndReason::kTareUnsteady:
+      return tare_unsteady(e);
+    case EndReason::kTareMoving:
+      return tare_moving(e, joint);
+    case EndReason::kContactOnApproach:
+      return touched(e);
+    case EndReason::kUnreachable:
+      return unreachable(e);
+    case EndReason::kJointLimit:
+      return joint_limit(e, joint);
+    case EndReason::kJointSpeed:
+      return joint_speed(e, joint);
+    case EndReason::kForceFault:
+      return format("external force %.4g N above force_fault_N = %.4g", e.value, e.bound);
+    case EndReason::kTorqueFault:
+      return format("external torque %.4g Nm above torque_fault_Nm = %.4g", e.value, e.bound);
+    case EndReason::kSensorSaturated:
+      return sensor_saturated(e);
+    case EndReason::kSensorNotFinite:
+      return "the sensor's reading is not a number";
+    case EndReason::kArmFault:
+      return arm_fault(e.arm_fault, arm_fault_text);
+    case EndReason::kArmNotEnabled:
+      return format("the arm left the enabled state unasked: %s",
+                    to_string(static_cast<ArmState>(e.index)));
+    case EndReason::kEnableTimeout:
+      return format("the arm was not enabled within %.3g s", e.value);
+    case EndReason::kFeedbackMissing:
+      return feedback_missing(e, joint);
+    case EndReason::kWrenchMissing:
+      return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);
+    case EndReason::kOverruns:
+      return format("the control loop cannot keep its period: %.0f late cycles", e.value);
+    case EndReason::kFeedbackPoor:
+      return format("feedback was missing in %.0f cycles, too many for what the plan was made for",
+                    e.value);
+    case EndReason::kMeasured:
+      return "all readings are taken";
+    case EndReason::kNothingMet:
+      return nothing_met(e);
+  }
+  return "?";
+}
+
+}  // namespace tenon::executor

@@ -1,0 +1,138 @@
+#include "hw/arm/arm_intake.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "hw/arm/cob_ids.h"
+#include "hw/canopen/emergency.h"
+#include "hw/canopen/heartbeat.h"
+#include "hw/canopen/object_setting.h"
+#include "shared/canopen/constants.h"
+
+namespace tenon::hw {
+namespace {
+
+constexpr std::uint8_t kBothHalves = 3;
+
+}  // namespace
+
+ArmIntake::ArmIntake(const Robot& robot, std::span<JointChannel> joints,
+                     ArmSupervision& supervision, ArmCounters& counters)
+    : joints_(joints), sensor_(robot.sensor), supervision_(supervision), counters_(counters) {}
+
+void ArmIntake::reset() noexcept {
+  for (JointChannel& joint : joints_) {
+    joint.reset();
+  }
+  pairing_.reset();
+  feedback_ = {};
+  cycle_open_ = false;
+  halves_seen_ = 0;
+}
+
+void ArmIntake::forget_freshness() noexcept {
+  feedback_.joints_fresh = 0;
+  halves_seen_ = 0;
+}
+
+void ArmIntake::open_cycle(std::int64_t now_ns, CanBus& bus) noexcept {
+  // A wrench that came late is still the newest; a joint's late answer is not this cycle's.
+  feedback_.wrench_fresh = false;
+  forget_freshness();
+  cycle_open_ = false;
+  drain(now_ns, bus);
+  forget_freshness();
+  cycle_open_ = true;
+  feedback_.sync_ns = now_ns;
+}
+
+bool ArmIntake::close_cycle() noexcept {
+  const bool was_open = cycle_open_;
+  cycle_open_ = false;
+  return was_open;
+}
+
+bool ArmIntake::complete() const noexcept {
+  return cycle_open_ && feedback_.joints_fresh == (1u << joints_.size()) - 1u &&
+         halves_seen_ == kBothHalves;
+}
+
+void ArmIntake::drain(std::int64_t now_ns, CanBus& bus) noexcept {
+  ReceivedFrame received;
+  for (int i = 0; i < kMaxFramesPerCall && bus.receive(received); ++i) {
+    take(received.frame, now_ns);
+  }
+}
+
+void ArmIntake::take(const CanFrame& frame, std::int64_t now_ns) noexcept {
+  if (take_process_data(frame)) {
+    return;
+  }
+  if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
+    supervision_.take_heartbeat(*heartbeat, now_ns);
+  } else if (const auto emergency = canopen::decode_emergency(frame)) {
+    supervision_.take_emergency(*emergency);
+  } else {
+    ++counters_.unexpected_frames;
+  }
+}
+
+bool ArmIntake::take_process_data(const CanFrame& frame) noexcept {
+  if (frame.extended || frame.remote) {
+    return false;
+  }
+  const bool force = frame.id == kForceCobId;
+  if (force || frame.id == kTorqueCobId) {
+    take_wrench_half(force ? WrenchPairing::Half::kForce : WrenchPairing::Half::kTorque, frame);
+    return true;
+  }
+  if (frame.id < kJointFeedbackCobId || frame.id >= joint_feedback_cob_id(joints_.size())) {
+    return false;
+  }
+  const std::size_t i = frame.id - kJointFeedbackCobId;
+  if (!joints_[i].take_feedback(frame)) {
+    ++counters_.malformed_frames;
+    return true;
+  }
+  counters_.late_frames += cycle_open_ ? 0 : 1;
+  feedback_.position[i] = joints_[i].position();
+  feedback_.effort[i] = joints_[i].effort();
+  feedback_.joints_fresh |= 1u << i;
+  return true;
+}
+
+void ArmIntake::take_wrench_half(WrenchPairing::Half half, const CanFrame& frame) noexcept {
+  if (frame.length != 8) {
+    ++counters_.malformed_frames;
+    return;
+  }
+  counters_.late_frames += cycle_open_ ? 0 : 1;
+  halves_seen_ = static_cast<std::uint8_t>(halves_seen_ | (1u << static_cast<unsigned>(half)));
+  const std::uint64_t torn_before = pairing_.torn();
+  const auto sample = pairing_.process(half, frame);
+  counters_.wrench_halves_torn += pairing_.torn() - torn_before;
+  if (sample && !sample->repeated) {
+    take_wrench(*sample);
+  }
+}
+
+void ArmIntake::take_wrench(const WrenchPairing::Sample& sample) noexcept {
+  for (std::size_t i = 0; i < 6; ++i) {
+    const int counts = sample.counts[i];
+    const double scale = i < 3 ? sensor_.force_per_count_N : sensor_.torque_per_count_Nm;
+    const double range = i < 3 ? sensor_.force_range_N : sensor_.torque_range_Nm;
+    const double value = counts * scale;
+    // A range of 0 is not given; the 16 bits still end somewhere.
+    if (std::abs(counts) >= 32767 || (range > 0.0 && std::abs(value) >= range)) {
+      const auto sub = static_cast<std::uint8_t>(i + 1);
+      supervision_.raise({ArmFaultKind::kSensorInvalid, sensor_.node,
+                          canopen::object_of(tenon::canopen::kForceInputs, sub),
+                          static_cast<std::uint16_t>(counts)});
+    }
+    feedback_.wrench[static_cast<Eigen::Index>(i)] = value;
+  }
+  feedback_.wrench_counter = sample.counter;
+  feedback_.wrench_fresh = true;
+}
+
+}  // namespace tenon::hw

@@ -1,0 +1,65 @@
+#pragma once
+// What an arm hears: the answers of its joints and the halves of its wrench become the feedback of
+// a cycle; heartbeats and emergencies, and a wrench beyond its range, go on to the supervision.
+// Decides nothing itself.
+//
+//   open_cycle()  takes in what came late, then waits for this cycle's answers
+//   drain()       takes in what has come, until feedback() is complete()
+//   close_cycle() what comes from now on is late
+//
+// Real-time, no clock; one thread. Joints, supervision and counters outlive it.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "hw/arm/arm_counters.h"
+#include "hw/arm/arm_supervision.h"
+#include "hw/arm/joint_channel.h"
+#include "hw/arm/wrench_pairing.h"
+#include "shared/cell/robot.h"
+#include "shared/ports/arm.h"
+#include "shared/ports/can_bus.h"
+
+namespace tenon::hw {
+
+class ArmIntake {
+ public:
+  /// Bounds a cycle's work however much arrives.
+  static constexpr int kMaxFramesPerCall = 256;
+
+  ArmIntake(const Robot& robot, std::span<JointChannel> joints, ArmSupervision& supervision,
+            ArmCounters& counters);
+
+  /// Forgets all that was heard.
+  void reset() noexcept;
+  void open_cycle(std::int64_t now_ns, CanBus& bus) noexcept;
+  void drain(std::int64_t now_ns, CanBus& bus) noexcept;
+  /// A frame of the bus.
+  void take(const CanFrame& frame, std::int64_t now_ns) noexcept;
+  /// False: none was open.
+  bool close_cycle() noexcept;
+
+  /// Whether everything that this cycle expects is there.
+  [[nodiscard]] bool complete() const noexcept;
+  /// State and fault are the supervision's to fill in.
+  [[nodiscard]] const ArmFeedback& feedback() const noexcept { return feedback_; }
+
+ private:
+  void forget_freshness() noexcept;
+  [[nodiscard]] bool take_process_data(const CanFrame& frame) noexcept;
+  void take_wrench_half(WrenchPairing::Half half, const CanFrame& frame) noexcept;
+  void take_wrench(const WrenchPairing::Sample& sample) noexcept;
+
+  const std::span<JointChannel> joints_;
+  const ForceTorqueSensor sensor_;
+  ArmSupervision& supervision_;
+  ArmCounters& counters_;
+
+  WrenchPairing pairing_;
+  ArmFeedback feedback_;
+  bool cycle_open_ = false;
+  std::uint8_t halves_seen_ = 0;  ///< this cycle: bit 0 force, bit 1 torque
+};
+
+}  // namespace tenon::hw

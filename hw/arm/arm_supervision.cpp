@@ -1,0 +1,211 @@
+#include "hw/arm/arm_supervision.h"
+
+#include <algorithm>
+
+#include "hw/canopen/object_setting.h"
+#include "hw/cia402/drive_state.h"
+#include "shared/canopen/constants.h"
+
+namespace tenon::hw {
+namespace {
+
+using canopen::object_of;
+using cia402::DriveState;
+
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+
+}  // namespace
+
+ArmSupervision::ArmSupervision(const Robot& robot, std::span<const JointChannel> joints,
+                               ArmCounters& counters)
+    : joints_(joints),
+      sensor_node_(robot.sensor.node),
+      heartbeat_timeout_ns_(robot.heartbeat_timeout_ms * kNanosecondsPerMillisecond),
+      counters_(counters) {
+  for (const Joint& joint : robot.joints) {
+    watch_.add(joint.node);
+  }
+  watch_.add(sensor_node_);
+}
+
+void ArmSupervision::reset() noexcept {
+  state_ = ArmState::kUnconfigured;
+  fault_ = {};
+}
+
+void ArmSupervision::begin(std::int64_t now_ns) noexcept {
+  watch_.restart(now_ns);
+  missing_cycles_.fill(0);
+  stale_cycles_ = 0;
+  enter_state(ArmState::kDisabled, now_ns);
+}
+
+void ArmSupervision::enter_state(ArmState state, std::int64_t now_ns) noexcept {
+  if (state_ != state) {
+    state_ = state;
+    entered_ns_ = now_ns;
+  }
+}
+
+void ArmSupervision::raise(const ArmFault& fault) noexcept {
+  if (state_ != ArmState::kFault) {
+    state_ = ArmState::kFault;
+    fault_ = fault;
+  }
+}
+
+void ArmSupervision::raise_of_drive(ArmFaultKind kind, const JointChannel& joint) noexcept {
+  raise({kind, joint.node(), object_of(tenon::canopen::kStatusword), joint.statusword()});
+}
+
+// --- told as it happens --------------------------------------------------------------------------
+
+void ArmSupervision::check_bus(const CanBusStatus& status) noexcept {
+  // Bus-off first: it says why the bus is down.
+  if (status.bus_off) {
+    raise({ArmFaultKind::kBusOff, 0, 0, 0});
+  } else if (!status.up) {
+    raise({ArmFaultKind::kBusDown, 0, 0, 0});
+  }
+}
+
+void ArmSupervision::bus_lost(const CanBusStatus& status) noexcept {
+  check_bus(status);
+  raise({ArmFaultKind::kBusDown, 0, 0, 0});
+}
+
+void ArmSupervision::take_heartbeat(const canopen::Heartbeat& heartbeat,
+                                    std::int64_t now_ns) noexcept {
+  if (!watch_.process(heartbeat, now_ns)) {
+    ++counters_.unexpected_frames;
+  } else if (heartbeat.state != tenon::canopen::kStateOperational) {
+    raise({ArmFaultKind::kUnexpectedReset, heartbeat.node, 0, heartbeat.state});
+  }
+}
+
+void ArmSupervision::take_emergency(const canopen::Emergency& emergency) noexcept {
+  ++counters_.emergencies;
+  if (canopen::is_warning(emergency)) {
+    return;
+  }
+  const std::uint32_t error_code = object_of(tenon::canopen::kErrorCode);
+  if (emergency.node == sensor_node_) {
+    raise({ArmFaultKind::kSensorInvalid, sensor_node_, error_code, emergency.code});
+    return;
+  }
+  const bool ours = std::any_of(joints_.begin(), joints_.end(), [&](const JointChannel& joint) {
+    return joint.node() == emergency.node;
+  });
+  if (!ours) {
+    return;
+  }
+  // The statusword may have told first; the error code says more.
+  const bool same_fault = fault_.kind == ArmFaultKind::kDriveFault &&
+                          fault_.node == emergency.node &&
+                          fault_.object == object_of(tenon::canopen::kStatusword);
+  if (same_fault) {
+    fault_.object = error_code;
+    fault_.code = emergency.code;
+  } else if (state_ != ArmState::kDisabled) {
+    // Drives that are off keep their fault until enabling resets it.
+    raise({ArmFaultKind::kDriveFault, emergency.node, error_code, emergency.code});
+  }
+}
+
+// --- once a cycle --------------------------------------------------------------------------------
+
+void ArmSupervision::check_heartbeats(std::int64_t now_ns) noexcept {
+  if (const auto node = watch_.silent(now_ns, heartbeat_timeout_ns_)) {
+    raise({ArmFaultKind::kHeartbeatLost, *node, 0, 0});
+  }
+}
+
+void ArmSupervision::check_feedback(const ArmFeedback& feedback) noexcept {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if ((feedback.joints_fresh >> i & 1u) != 0) {
+      missing_cycles_[i] = 0;
+      continue;
+    }
+    ++counters_.joint_frames_missing;
+    if (++missing_cycles_[i] > kMissingCycles) {
+      raise({ArmFaultKind::kFeedbackMissing, joints_[i].node(), 0, missing_cycles_[i]});
+    }
+  }
+  if (feedback.wrench_fresh) {
+    stale_cycles_ = 0;
+    return;
+  }
+  ++counters_.wrenches_missing;
+  if (++stale_cycles_ > kMissingCycles) {
+    raise({ArmFaultKind::kSensorStale, sensor_node_, 0, stale_cycles_});
+  }
+}
+
+void ArmSupervision::advance(std::int64_t now_ns, ArmRequest request) noexcept {
+  check_drives(request);
+  if (state_ == ArmState::kFault) {
+    return;
+  }
+  switch (request) {
+    case ArmRequest::kEnabled:
+      return enable(now_ns);
+    case ArmRequest::kDisabled:
+    case ArmRequest::kQuickStop:
+      return enter_state(none_energised() ? ArmState::kDisabled : ArmState::kStopping, now_ns);
+  }
+}
+
+void ArmSupervision::check_drives(ArmRequest request) noexcept {
+  if (state_ != ArmState::kEnabling && state_ != ArmState::kEnabled &&
+      state_ != ArmState::kStopping) {
+    return;
+  }
+  for (const JointChannel& joint : joints_) {
+    // A fault from before the enabling is being reset; one after it counts.
+    const bool expected_on = state_ == ArmState::kEnabled || joint.reached_enabled();
+    if (cia402::is_faulty(joint.state()) && (expected_on || state_ == ArmState::kStopping)) {
+      raise_of_drive(ArmFaultKind::kDriveFault, joint);
+    } else if (request == ArmRequest::kEnabled && expected_on &&
+               joint.state() != DriveState::kOperationEnabled) {
+      raise_of_drive(ArmFaultKind::kDriveState, joint);
+    }
+  }
+}
+
+void ArmSupervision::enable(std::int64_t now_ns) noexcept {
+  if (all_enabled()) {
+    enter_state(ArmState::kEnabled, now_ns);
+    return;
+  }
+  enter_state(ArmState::kEnabling, now_ns);
+  if (now_ns - entered_ns_ <= kEnablingTimeout_ns) {
+    return;
+  }
+  for (const JointChannel& joint : joints_) {
+    if (joint.state() != DriveState::kOperationEnabled) {
+      const bool faulty = cia402::is_faulty(joint.state());
+      raise_of_drive(faulty ? ArmFaultKind::kDriveFault : ArmFaultKind::kDriveState, joint);
+    }
+  }
+}
+
+ArmRequest ArmSupervision::granted(ArmRequest request) const noexcept {
+  if (state_ != ArmState::kFault || request == ArmRequest::kDisabled) {
+    return request;
+  }
+  return ArmRequest::kQuickStop;
+}
+
+bool ArmSupervision::all_enabled() const noexcept {
+  return std::all_of(joints_.begin(), joints_.end(), [](const JointChannel& joint) {
+    return joint.seen() && joint.state() == DriveState::kOperationEnabled;
+  });
+}
+
+bool ArmSupervision::none_energised() const noexcept {
+  return std::none_of(joints_.begin(), joints_.end(), [](const JointChannel& joint) {
+    return cia402::is_energised(joint.state());
+  });
+}
+
+}  // namespace tenon::hw

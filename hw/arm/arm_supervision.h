@@ -1,0 +1,83 @@
+#pragma once
+// What an arm is: its state, and the first fault. It is told what was heard and what could not be
+// sent, asks the joints' statuswords once a cycle, and sends nothing itself.
+//
+//   kUnconfigured --begin()--> kDisabled --enabled--> kEnabling --all enabled--> kEnabled
+//                                  ^                                                |
+//                                  +-- all off -- kStopping <-- disabled, quick stop-+
+//   any --raise()--> kFault, until reset(). The first fault stays.
+//
+// Supervised: bus, heartbeat of every node, boot-ups and other NMT states of running nodes, EMCY,
+// statuswords, feedback and wrench missing for more than kMissingCycles cycles in a row.
+//
+// Real-time but for the constructor, no clock; one thread. Joints and counters outlive it.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "hw/arm/arm_counters.h"
+#include "hw/arm/joint_channel.h"
+#include "hw/canopen/emergency.h"
+#include "hw/canopen/heartbeat.h"
+#include "hw/canopen/heartbeat_watch.h"
+#include "shared/cell/robot.h"
+#include "shared/ports/arm.h"
+#include "shared/ports/can_bus.h"
+
+namespace tenon::hw {
+
+class ArmSupervision {
+ public:
+  static constexpr std::uint32_t kMissingCycles = 5;
+  static constexpr std::int64_t kEnablingTimeout_ns = 2'000'000'000;
+
+  ArmSupervision(const Robot& robot, std::span<const JointChannel> joints, ArmCounters& counters);
+
+  [[nodiscard]] ArmState state() const noexcept { return state_; }
+  [[nodiscard]] const ArmFault& fault() const noexcept { return fault_; }
+
+  /// As before all configuration: no state, no fault.
+  void reset() noexcept;
+  /// All nodes are operational, and their silence counts from now.
+  void begin(std::int64_t now_ns) noexcept;
+
+  // Told as it happens.
+  void raise(const ArmFault& fault) noexcept;
+  void check_bus(const CanBusStatus& status) noexcept;
+  /// A frame could not be sent because the bus is gone. @param status of that bus
+  void bus_lost(const CanBusStatus& status) noexcept;
+  void take_heartbeat(const canopen::Heartbeat& heartbeat, std::int64_t now_ns) noexcept;
+  void take_emergency(const canopen::Emergency& emergency) noexcept;
+
+  // Once a cycle.
+  void check_heartbeats(std::int64_t now_ns) noexcept;
+  /// @param feedback of the cycle that has closed
+  void check_feedback(const ArmFeedback& feedback) noexcept;
+  /// Holds the drives against what is asked, and goes on towards it.
+  void advance(std::int64_t now_ns, ArmRequest request) noexcept;
+  /// What the drives are asked instead: in a fault they stop, and are not enabled.
+  [[nodiscard]] ArmRequest granted(ArmRequest request) const noexcept;
+
+ private:
+  void enter_state(ArmState state, std::int64_t now_ns) noexcept;
+  void check_drives(ArmRequest request) noexcept;
+  void enable(std::int64_t now_ns) noexcept;
+  void raise_of_drive(ArmFaultKind kind, const JointChannel& joint) noexcept;
+  [[nodiscard]] bool all_enabled() const noexcept;
+  [[nodiscard]] bool none_energised() const noexcept;
+
+  const std::span<const JointChannel> joints_;
+  const std::uint8_t sensor_node_;
+  const std::int64_t heartbeat_timeout_ns_;
+  ArmCounters& counters_;
+
+  ArmState state_ = ArmState::kUnconfigured;
+  std::int64_t entered_ns_ = 0;
+  ArmFault fault_;
+  canopen::HeartbeatWatch watch_;
+  std::array<std::uint32_t, kMaxJoints> missing_cycles_{};  ///< in a row
+  std::uint32_t stale_cycles_ = 0;                          ///< in a row without a new wrench
+};
+
+}  // namespace tenon::hw

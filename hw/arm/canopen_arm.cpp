@@ -1,0 +1,97 @@
+#include "hw/arm/canopen_arm.h"
+
+#include <span>
+
+#include "hw/arm/node_settings.h"
+
+namespace tenon::hw {
+namespace {
+
+const Robot& checked(const Robot& robot) {
+  check_robot(robot);
+  return robot;
+}
+
+}  // namespace
+
+CanopenArm::CanopenArm(const Robot& robot, CanBus& bus)
+    : bus_(bus),
+      bring_up_(checked(robot)),
+      joints_(robot.joints.begin(), robot.joints.end()),
+      supervision_(robot, joints_, counters_),
+      intake_(robot, joints_, supervision_, counters_),
+      output_(robot, bus, joints_, supervision_, counters_) {}
+
+bool CanopenArm::prepare(std::int64_t now_ns) {
+  if (state() == ArmState::kFault) {
+    bring_up_.restart();
+    supervision_.reset();
+  }
+  if (state() != ArmState::kUnconfigured) {
+    return true;
+  }
+  supervision_.check_bus(bus_.status());
+  run_bring_up(now_ns);
+  if (state() == ArmState::kFault || bring_up_.state() != BringUp::State::kDone) {
+    return false;
+  }
+  intake_.reset();
+  output_.begin(now_ns);
+  supervision_.begin(now_ns);
+  return true;
+}
+
+void CanopenArm::run_bring_up(std::int64_t now_ns) {
+  ReceivedFrame received;
+  for (int i = 0; bring_up_.state() != BringUp::State::kDone && i < ArmIntake::kMaxFramesPerCall &&
+                  bus_.receive(received);
+       ++i) {
+    bring_up_.process(received.frame, now_ns, bus_);
+    bring_up_.update(now_ns, bus_);
+  }
+  bring_up_.update(now_ns, bus_);
+  bus_.wait(0);  // what has been sent leaves now
+  if (bring_up_.state() == BringUp::State::kFailed) {
+    supervision_.raise(bring_up_.fault());
+  }
+}
+
+void CanopenArm::start_cycle(std::int64_t now_ns) noexcept {
+  if (state() == ArmState::kUnconfigured) {
+    return;
+  }
+  intake_.open_cycle(now_ns, bus_);
+  ++counters_.cycles;
+  output_.send_sync();
+}
+
+bool CanopenArm::receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept {
+  if (state() != ArmState::kUnconfigured) {
+    intake_.drain(now_ns, bus_);
+    supervision_.check_bus(bus_.status());
+  }
+  feedback = intake_.feedback();
+  feedback.state = state();
+  feedback.fault = fault();
+  return intake_.complete();
+}
+
+void CanopenArm::command(std::int64_t now_ns, ArmRequest request,
+                         const JointVector& position) noexcept {
+  if (state() == ArmState::kUnconfigured) {
+    return;
+  }
+  const bool was_enabled = state() == ArmState::kEnabled;
+  supervision_.check_bus(bus_.status());
+  supervision_.check_heartbeats(now_ns);
+  if (intake_.close_cycle()) {
+    supervision_.check_feedback(intake_.feedback());
+  }
+  supervision_.advance(now_ns, request);
+  const bool follow = was_enabled && state() == ArmState::kEnabled;
+  output_.send_setpoints(supervision_.granted(request), follow, position);
+  output_.send_heartbeat(now_ns);
+  bus_.wait(0);  // what has been sent leaves now
+}
+
+}  // namespace tenon::hw

@@ -1,0 +1,69 @@
+#pragma once
+// An arm of CiA 402 drives and a force/torque node on one CAN bus, behind the arm port.
+//
+// prepare() brings all nodes up (hw/arm/bring_up.h). After that a cycle is
+//
+//   start_cycle   takes in what came late, then SYNC: drives act on their targets and answer
+//   receive       TPDO1 of every joint, the two halves of the wrench
+//   command       supervision, state machine, RPDOs of every joint, the master's heartbeat
+//
+//   bus --> ArmIntake --> ArmSupervision --> ArmOutput --> bus
+//
+// The state machine stands in hw/arm/arm_supervision.h; prepare() leads out of kUnconfigured and
+// out of kFault. In kFault drives are quick-stopped, or disabled where the caller asks for that.
+// The master's first heartbeat leaves with the first command(); from then on the drives stop by
+// themselves when it stays away for the robot's heartbeat timeout.
+//
+// Real-time but for the constructor and prepare(). One thread. Owns everything but the bus, which
+// must outlive it.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "hw/arm/arm_counters.h"
+#include "hw/arm/arm_intake.h"
+#include "hw/arm/arm_output.h"
+#include "hw/arm/arm_supervision.h"
+#include "hw/arm/bring_up.h"
+#include "hw/arm/joint_channel.h"
+#include "shared/cell/robot.h"
+#include "shared/ports/arm.h"
+#include "shared/ports/can_bus.h"
+
+namespace tenon::hw {
+
+class CanopenArm : public Arm {
+ public:
+  using Counters = ArmCounters;
+
+  /// Throws InputError where check_robot() refuses.
+  CanopenArm(const Robot& robot, CanBus& bus);
+
+  [[nodiscard]] std::size_t joint_count() const noexcept override { return joints_.size(); }
+  [[nodiscard]] bool prepare(std::int64_t now_ns) override;
+  void start_cycle(std::int64_t now_ns) noexcept override;
+  [[nodiscard]] bool receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept override;
+  void command(std::int64_t now_ns, ArmRequest request,
+               const JointVector& position) noexcept override;
+  void wait(std::int64_t at_most_ns) noexcept override { bus_.wait(at_most_ns); }
+  [[nodiscard]] ArmState state() const noexcept override { return supervision_.state(); }
+  [[nodiscard]] ArmFault fault() const noexcept override { return supervision_.fault(); }
+
+  [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+  /// What the devices say they are; filled by prepare().
+  [[nodiscard]] const BringUp& bring_up() const { return bring_up_; }
+
+ private:
+  void run_bring_up(std::int64_t now_ns);
+
+  CanBus& bus_;
+  BringUp bring_up_;
+  Counters counters_;
+  std::vector<JointChannel> joints_;  ///< of a fixed size: the parts below look into it
+  ArmSupervision supervision_;
+  ArmIntake intake_;
+  ArmOutput output_;
+};
+
+}  // namespace tenon::hw

@@ -1,0 +1,211 @@
+#include "hw/arm/describe_fault.h"
+
+#include <cstdio>
+#include <optional>
+#include <vector>
+
+#include "hw/arm/arm_supervision.h"
+#include "hw/arm/bring_up.h"
+#include "hw/arm/node_settings.h"
+#include "hw/canopen/emergency.h"
+#include "hw/canopen/object_setting.h"
+#include "hw/canopen/sdo.h"
+#include "hw/cia402/drive_state.h"
+#include "shared/base/text.h"
+#include "shared/canopen/constants.h"
+
+namespace tenon::hw {
+namespace {
+
+using canopen::ObjectSetting;
+
+std::string node_name(const ArmFault& fault, const Robot& robot) {
+  std::string owner = "not of this robot";
+  for (const Joint& joint : robot.joints) {
+    if (joint.node == fault.node) owner = joint.name;
+  }
+  if (robot.sensor.node == fault.node) owner = "force/torque sensor";
+  return format("node %u (", static_cast<unsigned>(fault.node)) + owner + "): ";
+}
+
+std::string object_name(const ArmFault& fault) {
+  return format("%04Xh:%u", fault.object >> 8, fault.object & 0xFFu);
+}
+
+/// What the object was configured to be; the last time, where it was written twice.
+std::optional<ObjectSetting> setting_of(const ArmFault& fault, const Robot& robot) {
+  std::vector<ObjectSetting> settings;
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    if (robot.joints[i].node == fault.node) settings = joint_settings(robot, i);
+  }
+  if (robot.sensor.node == fault.node) settings = sensor_settings(robot);
+  settings.push_back(heartbeat_setting(robot));
+  std::optional<ObjectSetting> found;
+  for (const ObjectSetting& setting : settings) {
+    if (setting.object() == fault.object) found = setting;
+  }
+  return found;
+}
+
+std::string no_answer(const ArmFault& fault) {
+  const unsigned node = fault.node;
+  if (fault.object != 0) {
+    return "no SDO answer for " + object_name(fault) +
+           format(" within 0.5 s; expected 0x%03X; check that no other master talks to the node",
+                  tenon::canopen::kSdoResponse + node);
+  }
+  const unsigned heartbeat = tenon::canopen::kHeartbeat + node;
+  if (fault.code == tenon::canopen::kStateBootUp) {
+    return format(
+        "no boot-up within %.1f s; expected 0x%03X after NMT reset; check power, wiring, bit "
+        "rate, node id",
+        static_cast<double>(BringUp::kBootUpTimeout_ns) * 1e-9, heartbeat);
+  }
+  return format(
+      "did not become %s within %.1f s; expected 0x%03X#%02X; check the node's error register "
+      "(1001h)",
+      fault.code == tenon::canopen::kStateOperational ? "operational" : "pre-operational",
+      static_cast<double>(BringUp::kStateTimeout_ns) * 1e-9, heartbeat, fault.code);
+}
+
+std::string configuration(const ArmFault& fault, const Robot& robot) {
+  const std::string object = object_name(fault);
+  const unsigned index = fault.object >> 8;
+  const auto setting = setting_of(fault, robot);
+  if (setting && setting->action == ObjectSetting::Action::kWriteIfOther &&
+      fault.code == tenon::canopen::kAbortReadOnly) {
+    return format(
+        "its PDO mapping %04Xh is fixed (abort 0x%08X) and another than hw/README.md lists; a "
+        "joint's depends on mode and targets_per_frame",
+        index, fault.code);
+  }
+  if (const char* reason = canopen::sdo_abort_text(fault.code)) {
+    std::string wanted;
+    if (setting && setting->action != ObjectSetting::Action::kExpect) {
+      wanted = format(" = 0x%X", setting->value);
+    }
+    return "refused " + object + wanted + ": " + reason +
+           format(" (abort 0x%08X); check the device's manual and firmware", fault.code);
+  }
+  if (index == tenon::canopen::kSupportedModes && setting) {
+    return format(
+        "does not support the robot file's mode of operation (6502h = 0x%X, bit mask 0x%X is "
+        "missing); set the joint's mode to 8 or 7 as the drive offers",
+        fault.code, setting->value);
+  }
+  if (index == tenon::canopen::kDeviceType) {
+    return format("is no CiA 402 drive (1000h = 0x%08X, low half must be 402); check the node id",
+                  fault.code);
+  }
+  return "holds " + object + format(" = 0x%X", fault.code) +
+         (setting ? format(" where 0x%X was asked for", setting->value) : std::string()) +
+         "; check the device's limits and firmware";
+}
+
+std::string drive_state(const ArmFault& fault) {
+  const auto word = static_cast<std::uint16_t>(fault.code);
+  return format(
+      "is in '%s' (statusword 0x%04X) where 'operation enabled' was expected; check "
+      "enable inputs, supply voltage, safe torque off",
+      cia402::to_string(cia402::decode_statusword(word)), fault.code);
+}
+
+/// The standard's words where it has some, else the number alone.
+std::string error_code(std::uint32_t code) {
+  const char* text = canopen::emergency_text(code);
+  return format("0x%04X", code) + (text != nullptr ? format(" (%s)", text) : std::string());
+}
+
+std::string drive_fault(const ArmFault& fault) {
+  if (fault.object >> 8 == tenon::canopen::kErrorCode) {
+    return "drive fault " + error_code(fault.code) + "; see the drive's manual for the code";
+  }
+  return format(
+      "drive fault (statusword 0x%04X); read its error code with tenon-can read %u "
+      "0x603F 0",
+      fault.code, static_cast<unsigned>(fault.node));
+}
+
+std::string unexpected_reset(const ArmFault& fault) {
+  if (fault.code == tenon::canopen::kStateBootUp) {
+    return "has reset itself while running (boot-up message); check its supply voltage";
+  }
+  return format(
+      "has left operational (heartbeat state 0x%02X); check for another NMT master and "
+      "the node's error behaviour (1029h)",
+      fault.code);
+}
+
+std::string sensor_invalid(const ArmFault& fault, const Robot& robot) {
+  switch (fault.object >> 8) {
+    case tenon::canopen::kForceInputs: {
+      static constexpr const char* kAxes[] = {"fx", "fy", "fz", "tx", "ty", "tz"};
+      const std::uint32_t axis = (fault.object & 0xFFu) - 1;
+      const bool force = axis < 3;
+      const double scale =
+          force ? robot.sensor.force_per_count_N : robot.sensor.torque_per_count_Nm;
+      const double range = force ? robot.sensor.force_range_N : robot.sensor.torque_range_Nm;
+      const auto counts = static_cast<std::int16_t>(static_cast<std::uint16_t>(fault.code));
+      return format(
+          "%s = %.2f %s is at or beyond the range of %.2f; the load is too high or the "
+          "sensor is damaged",
+          axis < 6 ? kAxes[axis] : "?", counts * scale, force ? "N" : "Nm", range);
+    }
+    case tenon::canopen::kSensorStatus:
+      return format("reports status 0x%04X (2002h) where 0 is good; check the sensor", fault.code);
+  }
+  return "reports error " + error_code(fault.code) + "; check the sensor";
+}
+
+}  // namespace
+
+std::string describe(const ArmFault& fault, const Robot& robot) {
+  switch (fault.kind) {
+    case ArmFaultKind::kNone:
+      return "no fault";
+    case ArmFaultKind::kNoAnswer:
+      return node_name(fault, robot) + no_answer(fault);
+    case ArmFaultKind::kConfiguration:
+      return node_name(fault, robot) + configuration(fault, robot);
+    case ArmFaultKind::kHeartbeatLost:
+      return node_name(fault, robot) +
+             format("no heartbeat for %u ms; expected 0x%03X every %u ms; check power and wiring",
+                    robot.heartbeat_timeout_ms, tenon::canopen::kHeartbeat + fault.node,
+                    robot.heartbeat_ms);
+    case ArmFaultKind::kUnexpectedReset:
+      return node_name(fault, robot) + unexpected_reset(fault);
+    case ArmFaultKind::kDriveFault:
+      return node_name(fault, robot) + drive_fault(fault);
+    case ArmFaultKind::kDriveState:
+      return node_name(fault, robot) + drive_state(fault);
+    case ArmFaultKind::kFeedbackMissing:
+      return node_name(fault, robot) +
+             format(
+                 "no feedback (TPDO1) in %u cycles in a row, at most %u are allowed; check bus "
+                 "load and wiring",
+                 fault.code, ArmSupervision::kMissingCycles);
+    case ArmFaultKind::kSensorStale:
+      return node_name(fault, robot) +
+             format(
+                 "no new wrench in %u cycles in a row, at most %u are allowed; check that the "
+                 "sensor samples at least once a cycle of %u us",
+                 fault.code, ArmSupervision::kMissingCycles, robot.cycle_us);
+    case ArmFaultKind::kSensorInvalid:
+      return node_name(fault, robot) + sensor_invalid(fault, robot);
+    case ArmFaultKind::kBusDown:
+      return "the CAN bus is gone (interface down or connection closed); check the adapter, or "
+             "that the other end still runs";
+    case ArmFaultKind::kOtherMaster:
+      return format(
+          "another master runs on this bus: 0x%03X (%s) came before this one had sent "
+          "anything; stop it first",
+          fault.code,
+          fault.code == tenon::canopen::kSync ? "SYNC" : "heartbeat of the master's node");
+    case ArmFaultKind::kBusOff:
+      return "the CAN controller went bus-off (too many errors); check wiring, termination and "
+             "bit rate";
+  }
+  return "unknown fault";
+}
+
+}  // namespace tenon::hw

@@ -1,0 +1,90 @@
+#include "hw/arm/frame_set.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "hw/arm/cob_ids.h"
+#include "shared/canopen/constants.h"
+
+namespace tenon::hw {
+namespace {
+
+constexpr std::uint32_t kMicrosecondsPerMillisecond = 1000;
+constexpr std::uint32_t kEnablingSteps = 4;  // fault reset, shutdown, switch on, enable operation
+
+class Frames {
+ public:
+  explicit Frames(const Robot& robot) : robot_(robot) {}
+
+  void cyclic(std::string name, std::uint32_t id, std::uint32_t data_bytes, std::uint8_t node,
+              CyclePart part) {
+    frames_.push_back({std::move(name), id, data_bytes, node, part, robot_.cycle_us, true, 0});
+  }
+  void on_change(std::string name, std::uint32_t id, std::uint32_t data_bytes, std::uint8_t node,
+                 CyclePart part) {
+    frames_.push_back(
+        {std::move(name), id, data_bytes, node, part, robot_.cycle_us, false, kEnablingSteps});
+  }
+  void heartbeat(const std::string& of, std::uint8_t node, CyclePart part) {
+    frames_.push_back({"heartbeat of " + of, canopen::kHeartbeat + node, 1, node, part,
+                       robot_.heartbeat_ms * kMicrosecondsPerMillisecond, false, 0});
+  }
+  [[nodiscard]] std::vector<BusFrame> take() { return std::move(frames_); }
+
+ private:
+  const Robot& robot_;
+  std::vector<BusFrame> frames_;
+};
+
+/// Targets two to a frame, controlwords beside them.
+void add_packed_commands(const Robot& robot, Frames& frames) {
+  const std::uint8_t master = robot.master_node;
+  for (const Joint& joint : robot.joints) {
+    frames.on_change("controlword of " + joint.name, joint_controlword_cob_id(joint.node), 2,
+                     master, CyclePart::kCommand);
+  }
+  for (std::size_t i = 0; i < robot.joints.size(); i += 2) {
+    const Joint& first = robot.joints[i];
+    const bool pair = i + 1 < robot.joints.size();
+    frames.cyclic(pair ? "targets of " + first.name + ", " + robot.joints[i + 1].name
+                       : "target of " + first.name,
+                  joint_command_cob_id(first.node), pair ? 8 : 4, master, CyclePart::kCommand);
+  }
+}
+
+}  // namespace
+
+std::vector<BusFrame> frame_set(const Robot& robot) {
+  Frames frames(robot);
+  frames.cyclic("SYNC", canopen::kSync, 0, robot.master_node, CyclePart::kSync);
+  frames.cyclic("force", kForceCobId, 8, robot.sensor.node, CyclePart::kFeedback);
+  frames.cyclic("torque", kTorqueCobId, 8, robot.sensor.node, CyclePart::kFeedback);
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const Joint& joint = robot.joints[i];
+    frames.cyclic("feedback of " + joint.name, joint_feedback_cob_id(i), 8, joint.node,
+                  CyclePart::kFeedback);
+  }
+  if (robot.targets_per_frame == 2) {
+    add_packed_commands(robot, frames);
+  } else {
+    for (const Joint& joint : robot.joints) {
+      frames.cyclic("command of " + joint.name, joint_command_cob_id(joint.node), 6,
+                    robot.master_node, CyclePart::kCommand);
+    }
+  }
+  for (const Joint& joint : robot.joints) {
+    frames.heartbeat(joint.name, joint.node, CyclePart::kAnytime);
+  }
+  frames.heartbeat("the sensor", robot.sensor.node, CyclePart::kAnytime);
+  frames.heartbeat("the master", robot.master_node, CyclePart::kCommand);
+  return frames.take();
+}
+
+std::uint32_t master_frames(const Robot& robot) {
+  const std::vector<BusFrame> frames = frame_set(robot);
+  return static_cast<std::uint32_t>(
+      std::count_if(frames.begin(), frames.end(),
+                    [&](const BusFrame& frame) { return frame.node == robot.master_node; }));
+}
+
+}  // namespace tenon::hw

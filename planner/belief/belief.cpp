@@ -1,0 +1,112 @@
+#include "planner/belief/belief.h"
+
+#include <bit>
+#include <cmath>
+
+namespace tenon::planner {
+namespace {
+
+constexpr double kCell_m = 1e-4;
+constexpr double kCell_rad = 0.02 * 3.14159265358979323846 / 180.0;
+
+Eigen::Quaterniond mean_orientation(const Belief& belief) {
+  // Newton's iteration on the rotation group; quadratic, a few steps.
+  constexpr int kMaxIterations = 32;
+  constexpr double kConverged_rad = 1e-13;
+  Eigen::Quaterniond mean = belief.particles.front().pose.orientation;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    Vector3 correction_rad = Vector3::Zero();
+    for (const Particle& particle : belief.particles) {
+      correction_rad += rotation_vector(particle.pose.orientation * mean.conjugate());
+    }
+    correction_rad /= static_cast<double>(belief.particles.size());
+    if (correction_rad.norm() < kConverged_rad) break;
+    mean = (rotation_of(correction_rad) * mean).normalized();
+  }
+  return mean;
+}
+
+std::int64_t cell(double value, double size) {
+  return static_cast<std::int64_t>(std::floor(value / size + 0.5));
+}
+
+}  // namespace
+
+Metric metric_of(const Task& task) { return {task.orientation_weight}; }
+
+Belief cross_polytope(const Task& task, const Start& start) {
+  Belief belief;
+  // The two tips of an axis have both extremes of friction, and the next axis has them the other
+  // way round, so that friction is not tied to one direction.
+  bool slippery = true;
+  for (int axis = 0; axis < 6; ++axis) {
+    const double offset = task.particle_sigmas * start.sigma[axis];
+    if (!has(task.coordinates, axis) || offset == 0.0) continue;
+    for (const double sign : {+1.0, -1.0}) {
+      Vector6 displacement = Vector6::Zero();
+      displacement[axis] = sign * offset;
+      const double friction = slippery ? task.friction.low : task.friction.high;
+      belief.particles.push_back({displaced(start.pose, displacement),
+                                  {},
+                                  {friction, task.contact_stiffness_Npm, task.oversize_m}});
+      slippery = !slippery;
+    }
+    slippery = !slippery;
+  }
+  return belief.particles.empty() ? single_particle(task, start) : belief;
+}
+
+Belief single_particle(const Task& task, const Start& start) {
+  return {{{start.pose, {}, {task.friction.nominal, task.contact_stiffness_Npm}}}};
+}
+
+Belief start_belief(const Task& task, const Start& start, PlanMethod method) {
+  return method == PlanMethod::kMha ? cross_polytope(task, start) : single_particle(task, start);
+}
+
+Pose mean_pose(const Belief& belief) {
+  Pose mean;
+  for (const Particle& particle : belief.particles) mean.position_m += particle.pose.position_m;
+  mean.position_m /= static_cast<double>(belief.particles.size());
+  mean.orientation = mean_orientation(belief);
+  return mean;
+}
+
+double uncertainty(const Belief& belief, const Metric& metric) {
+  const Pose mean = mean_pose(belief);
+  double position_m2 = 0.0;
+  double orientation_rad2 = 0.0;
+  for (const Particle& particle : belief.particles) {
+    const Vector6 off = displacement_between(mean, particle.pose);
+    position_m2 += off.head<3>().squaredNorm();
+    orientation_rad2 += off.tail<3>().squaredNorm();
+  }
+  const auto count = static_cast<double>(belief.particles.size());
+  return (position_m2 + metric.orientation_weight * orientation_rad2) / count;
+}
+
+double distance(const Pose& a, const Pose& b, const Metric& metric) {
+  const Vector6 between = displacement_between(a, b);
+  return between.head<3>().norm() + metric.orientation_weight * between.tail<3>().norm();
+}
+
+void append_cell(const Particle& particle, double cell_m, double cell_rad,
+                 std::vector<std::int64_t>& key) {
+  const Vector3 turn_rad = rotation_vector(particle.pose.orientation);
+  for (int i = 0; i < 3; ++i) key.push_back(cell(particle.pose.position_m[i], cell_m));
+  for (int i = 0; i < 3; ++i) key.push_back(cell(turn_rad[i], cell_rad));
+  key.push_back(particle.signature.bits);
+  key.push_back(std::bit_cast<std::int64_t>(particle.physics.friction));
+  key.push_back(std::bit_cast<std::int64_t>(particle.physics.contact_stiffness_Npm));
+  key.push_back(std::bit_cast<std::int64_t>(particle.physics.oversize_m));
+}
+
+BeliefKey identity(const Belief& belief) {
+  BeliefKey key;
+  for (const Particle& particle : belief.particles) {
+    append_cell(particle, kCell_m, kCell_rad, key);
+  }
+  return key;
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,36 @@
+#include "planner/belief/belief_summary.h"
+
+#include <algorithm>
+
+#include "shared/task/inserted.h"
+
+namespace tenon::planner {
+
+BeliefSummary summarise(const Belief& belief, const Task& task) {
+  const Metric metric = metric_of(task);
+  BeliefSummary summary{mean_pose(belief), uncertainty(belief, metric)};
+  for (const Particle& particle : belief.particles) {
+    const Vector6 off = displacement_between(summary.mean, particle.pose);
+    summary.spread = summary.spread.cwiseMax(off.cwiseAbs());
+    summary.farthest_m = std::max(summary.farthest_m, distance(particle.pose, task.goal, metric));
+    summary.inserted = summary.inserted && inserted(task, particle.pose);
+  }
+  return summary;
+}
+
+double move_cost(const Task& task, double uncertainty_m2) {
+  return task.move_weight + task.uncertainty_weight_per_m2 * uncertainty_m2;
+}
+
+double edge_cost(const BeliefSummary& from, const BeliefSummary& to, const Task& task) {
+  return task.distance_weight_per_m * distance(from.mean, to.mean, metric_of(task)) +
+         move_cost(task, from.uncertainty_m2);
+}
+
+bool at_goal(const BeliefSummary& belief, const Task& task) {
+  return belief.farthest_m <= task.goal_tolerance_m &&
+         distance(belief.mean, task.goal, metric_of(task)) <= task.goal_tolerance_m &&
+         belief.uncertainty_m2 <= task.goal_uncertainty_m2 && belief.inserted;
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,35 @@
+#pragma once
+// The guarded moves that the search may choose from. Every displacement is a value that a plan file
+// can hold (32-bit float), so that what is searched is what is written.
+
+#include <optional>
+#include <vector>
+
+#include "planner/belief/belief.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+struct Primitive {
+  int label = 0;  ///< 2a: + along axis a, 2a + 1: -; kDirectLabel + i: straight to goal attractor i
+  Vector6 displacement = Vector6::Zero();
+};
+
+inline constexpr int kDirectLabel = 12;
+
+/// + and - one step along every search coordinate.
+[[nodiscard]] std::vector<Primitive> step_primitives(const Task& task);
+
+/// + and - one long step along every translation of the search, for the attractor search.
+[[nodiscard]] std::vector<Primitive> long_primitives(const Task& task);
+
+/// From the belief's mean straight to a place, in the search's coordinates. A lattice cannot land
+/// on an arbitrary goal; this can. Empty where the place is beyond direct_reach_m, or already met.
+[[nodiscard]] std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean,
+                                                        const Pose& place,
+                                                        int label = kDirectLabel);
+
+/// The value that comes back after storing it as a 32-bit float.
+[[nodiscard]] Vector6 stored(const Vector6& value);
+
+}  // namespace tenon::planner

@@ -1,0 +1,197 @@
+#include "planner/judge/certification.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "planner/belief/belief_summary.h"
+#include "planner/judge/plan_draft.h"
+#include "shared/base/error.h"
+#include "shared/base/text.h"
+#include "shared/plan/codec.h"
+#include "shared/task/find_start.h"
+#include "shared/task/inserted.h"
+
+namespace tenon::planner {
+namespace {
+
+constexpr double kPoseAgreement_m = 0.5e-3;
+constexpr double kPoseAgreement_rad = 0.2 * std::numbers::pi / 180.0;
+
+Belief ends(const std::vector<Chain>& chains) {
+  Belief belief;
+  for (const Chain& chain : chains) belief.particles.push_back({chain.end(), {}, {}});
+  return belief;
+}
+
+/// One move against its reference. @return empty where they agree
+std::string difference(const GuardedMove::Result& move, const GuardedMove::Result& reference) {
+  if (move.outcome != reference.outcome) {
+    return std::string("outcome ") + to_string(move.outcome) + ", as planned " +
+           to_string(reference.outcome);
+  }
+  if (move.signature != reference.signature) {
+    return "contacts " + to_string(move.signature) + ", as planned " +
+           to_string(reference.signature);
+  }
+  const Vector6 off = displacement_between(reference.pose, move.pose);
+  if (off.head<3>().norm() > kPoseAgreement_m || off.tail<3>().norm() > kPoseAgreement_rad) {
+    return format("pose differs by %.3f mm and %.3f degrees", 1e3 * off.head<3>().norm(),
+                  180.0 / std::numbers::pi * off.tail<3>().norm());
+  }
+  return {};
+}
+
+/// Which chain ends farthest from the goal, those that are not inserted before all others.
+std::size_t farthest(const std::vector<Chain>& chains, const Task& task) {
+  const auto off = [&](const Chain& chain) {
+    return std::pair(!inserted(task, chain.end()),
+                     distance(chain.end(), task.goal, metric_of(task)));
+  };
+  const auto worst = std::max_element(chains.begin(), chains.end(),
+                                      [&](auto& a, auto& b) { return off(a) < off(b); });
+  return static_cast<std::size_t>(worst - chains.begin());
+}
+
+void keep_earliest(VariantRun& run, const Disagreement& found) {
+  if (run.holds || found.step < run.disagreement.step) run.disagreement = found;
+  run.holds = false;
+}
+
+void judge(VariantRun& run, const VariantRun& reference, const Task& task, std::size_t last_step) {
+  run.holds = true;
+  const bool same_physics = run.variant.friction == reference.variant.friction &&
+                            run.variant.oversize_m == reference.variant.oversize_m;
+  for (std::size_t p = 0; p < run.chains.size(); ++p) {
+    const Chain& chain = run.chains[p];
+    const Chain& planned = reference.chains[p];
+    const std::size_t common = std::min(chain.moves.size(), planned.moves.size());
+    for (std::size_t i = 0; same_physics && i < common; ++i) {
+      const std::string why = difference(chain.moves[i], planned.moves[i]);
+      if (why.empty()) continue;
+      keep_earliest(run, {chain.steps[i], p, why});
+      break;
+    }
+    if (!chain.done) {
+      keep_earliest(run, {chain.steps.empty() ? 0 : chain.steps.back(), p, chain.failure});
+    }
+  }
+  if (!run.holds) return;
+  const BeliefSummary end = summarise(ends(run.chains), task);
+  if (at_goal(end, task)) return;
+  keep_earliest(run,
+                {last_step, farthest(run.chains, task),
+                 format("the chain ends beside the goal: farthest particle %.3f mm, u %.3g m^2",
+                        1e3 * end.farthest_m, end.uncertainty_m2)});
+}
+
+double cost_of(const std::vector<Chain>& chains, const Task& task) {
+  std::vector<BeliefSummary> nodes;
+  for (std::size_t i = 0;; ++i) {
+    Belief belief;
+    for (const Chain& chain : chains) {
+      if (i > chain.moves.size()) return 0.0;
+      belief.particles.push_back({i == 0 ? chain.start.pose : chain.moves[i - 1].pose, {}, {}});
+    }
+    nodes.push_back(summarise(belief, task));
+    if (i == chains.front().moves.size()) break;
+  }
+  double cost = 0.0;
+  for (std::size_t i = 1; i < nodes.size(); ++i) cost += edge_cost(nodes[i - 1], nodes[i], task);
+  return cost;
+}
+
+}  // namespace
+
+std::vector<CertificationVariant> certification_variants(const Task& task, PlanMethod method) {
+  const std::int64_t step_us = task.rollout_step_us;
+  std::vector<CertificationVariant> variants = {
+      {"as planned", std::nullopt, std::nullopt, step_us},
+      {"half the integration step", std::nullopt, std::nullopt, step_us / 2}};
+  if (method == PlanMethod::kMha) {
+    variants.push_back({"lowest friction", task.friction.low, std::nullopt, step_us});
+    variants.push_back({"highest friction", task.friction.high, std::nullopt, step_us});
+    if (task.oversize_m > 0.0) variants.push_back({"as drawn", std::nullopt, 0.0, step_us});
+  }
+  return variants;
+}
+
+bool Certification::holds() const { return refuting() == nullptr; }
+
+const VariantRun* Certification::refuting() const {
+  const VariantRun* earliest = nullptr;
+  for (const VariantRun& run : runs) {
+    if (run.holds) continue;
+    if (earliest == nullptr || run.disagreement.step < earliest->disagreement.step) earliest = &run;
+  }
+  return earliest;
+}
+
+const Start& start_of(const Plan& plan, const Task& task) {
+  const Start* start = find_start(task, plan.start_name);
+  if (start == nullptr) {
+    throw InputError("plan: task '" + task.name + "' has no start '" + plan.start_name +
+                     "': give the task that the plan was made from");
+  }
+  if (!start->pose.position_m.isApprox(plan.start.position_m, 1e-5) ||
+      !(start->pose.orientation.angularDistance(plan.start.orientation) < 1e-5)) {
+    throw InputError("plan: its start '" + plan.start_name + "' stands elsewhere in task '" +
+                     task.name + "': plan again");
+  }
+  return *start;
+}
+
+namespace {
+
+/// All that a plan says besides its steps' ways and outcomes follows from its task.
+void check_same_task(const Plan& plan, const Task& task) {
+  std::vector<Vector6> displacements;
+  for (const Step& step : plan.steps) displacements.push_back(step.displacement);
+  const Plan drafted = draft_plan(task, start_of(plan, task),
+                                  {plan.contact_stiffness_Npm, plan.latency_max_s}, displacements);
+  const auto demand = [&](bool same, const char* what) {
+    if (same) return;
+    throw InputError(std::string("plan: its ") + what + " is not that of task '" + task.name +
+                     "': plan again, or give the --cell that it was made for");
+  };
+  demand(plan.goal == drafted.goal, "goal");
+  demand(plan.goal_tolerance_m == drafted.goal_tolerance_m, "goal tolerance");
+  demand(plan.compliance == drafted.compliance, "compliance");
+  demand(plan.force_limit_N == drafted.force_limit_N, "force limit");
+  demand(plan.torque_limit_Nm == drafted.torque_limit_Nm, "torque limit");
+  demand(plan.parameter_sets == drafted.parameter_sets, "set of speeds, thresholds and times");
+}
+
+}  // namespace
+
+Certification certify(std::span<const std::uint8_t> bytes, const Task& task, RolloutPool& pool) {
+  const DecodedPlan decoded = decode_plan(bytes);
+  if (!decoded.plan) {
+    throw InputError("plan: byte " + std::to_string(decoded.offset) + ", " + decoded.field + ": " +
+                     to_string(decoded.error));
+  }
+  const Plan& plan = *decoded.plan;
+  check_same_task(plan, task);
+  const Belief belief = start_belief(task, start_of(plan, task), plan.method);
+  const std::size_t particles = belief.particles.size();
+
+  Certification certification;
+  for (const CertificationVariant& variant : certification_variants(task, plan.method)) {
+    certification.runs.push_back({variant, std::vector<Chain>(particles), false, {}});
+  }
+  pool.run(certification.runs.size() * particles, [&](Rollout& rollout, std::size_t i) {
+    VariantRun& run = certification.runs[i / particles];
+    Particle start = belief.particles[i % particles];
+    start.physics.friction = run.variant.friction.value_or(start.physics.friction);
+    start.physics.oversize_m = run.variant.oversize_m.value_or(start.physics.oversize_m);
+    start.physics.contact_stiffness_Npm = plan.contact_stiffness_Npm;
+    run.chains[i % particles] = run_chain(rollout, plan, start, run.variant.step_us);
+  });
+  const std::size_t last_step = plan.steps.empty() ? 0 : plan.steps.size() - 1;
+  for (VariantRun& run : certification.runs) {
+    judge(run, certification.runs.front(), task, last_step);
+  }
+  certification.cost = cost_of(certification.runs.front().chains, task);
+  return certification;
+}
+
+}  // namespace tenon::planner

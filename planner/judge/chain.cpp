@@ -1,0 +1,69 @@
+#include "planner/judge/chain.h"
+
+#include "planner/judge/shown.h"
+#include "shared/base/text.h"
+
+namespace tenon::planner {
+namespace {
+
+std::string bit_name(int index) {
+  return to_string(ContactSignature{static_cast<std::uint16_t>(1U << index)});
+}
+
+}  // namespace
+
+std::string describe(const Transition& transition, const GuardedMove::Result& move) {
+  std::string outcome = std::string("outcome ") + to_string(move.outcome);
+  switch (transition.deviation) {
+    case Deviation::kNone:
+      return outcome;
+    case Deviation::kUnexpectedOutcome:
+      return outcome + " has no successor";
+    case Deviation::kTravelOutside:
+      return outcome + format(", travelled %.2f (mm, deg) in %s, outside its envelope",
+                              shown(move.travelled[transition.index], transition.index),
+                              axis_name(transition.index));
+    case Deviation::kContactMissing:
+      return outcome + ", contact " + bit_name(transition.index) + " is missing";
+    case Deviation::kContactUnforeseen:
+      return outcome + ", contact " + bit_name(transition.index) + " was not foreseen";
+  }
+  return outcome;
+}
+
+Chain run_chain(Rollout& rollout, const Plan& plan, const Particle& start, std::int64_t step_us) {
+  Chain chain;
+  chain.start = start;
+  if (plan.steps.empty()) chain.done = true;
+  Particle particle = start;
+  for (std::size_t step = 0; step < plan.steps.size();) {
+    const RolloutResult result = rollout.simulate(particle, move_parameters(plan, step), step_us);
+    chain.steps.push_back(step);
+    if (!result.valid) {
+      chain.failure = "the simulation failed: " + result.failure;
+      return chain;
+    }
+    chain.moves.push_back(result.move);
+    chain.touching.push_back(result.touching);
+    const Transition next = transition(plan, step, result.move);
+    if (next.successor == kSuccessorFail) {
+      chain.failure = describe(next, result.move);
+      return chain;
+    }
+    particle.pose = result.move.pose;
+    particle.signature = result.move.signature;
+    chain.done = next.successor == kSuccessorDone;
+    if (chain.done) return chain;
+    step = next.successor;
+  }
+  return chain;
+}
+
+std::size_t first_deviation(const Plan& plan, const Chain& chain) {
+  for (std::size_t i = 0; i < chain.moves.size(); ++i) {
+    if (transition(plan, chain.steps[i], chain.moves[i]).successor == kSuccessorFail) return i;
+  }
+  return chain.moves.size();
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,108 @@
+#include "planner/judge/envelopes.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace tenon::planner {
+namespace {
+
+constexpr double kSensor_m = 1e-3;
+constexpr double kSensor_rad = 5e-3;
+
+struct Seen {
+  bool any = false;
+  Envelope envelope;
+
+  void add(const GuardedMove::Result& move) {
+    if (!any) {
+      envelope = {move.travelled, move.travelled, move.signature, move.signature};
+      any = true;
+      return;
+    }
+    envelope.travelled_min = envelope.travelled_min.cwiseMin(move.travelled);
+    envelope.travelled_max = envelope.travelled_max.cwiseMax(move.travelled);
+    envelope.always.bits &= move.signature.bits;
+    envelope.possible.bits |= move.signature.bits;
+  }
+
+  void span(const Vector6& travelled) {
+    envelope.travelled_min = envelope.travelled_min.cwiseMin(travelled);
+    envelope.travelled_max = envelope.travelled_max.cwiseMax(travelled);
+  }
+};
+
+Envelope widened(Envelope envelope, const EnvelopeMargins& margins, CoordinateMask coordinates) {
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(coordinates, axis)) {
+      envelope.travelled_min[axis] = envelope.travelled_max[axis] = 0.0;
+      continue;
+    }
+    const double margin = axis < 3 ? margins.position_m : margins.angle_rad;
+    envelope.travelled_min[axis] -= margin;
+    envelope.travelled_max[axis] += margin;
+  }
+  return envelope;
+}
+
+using SeenByOutcome = std::array<Seen, kOutcomes.size()>;
+
+// Between the tool that just missed the contact and the one that met it there are others.
+void close_gap(SeenByOutcome& seen) {
+  const Seen& reached = seen[static_cast<std::size_t>(Outcome::kReached)];
+  Seen& contact = seen[static_cast<std::size_t>(Outcome::kContact)];
+  if (!reached.any || !contact.any) return;
+  contact.span(reached.envelope.travelled_min);
+  contact.span(reached.envelope.travelled_max);
+}
+
+}  // namespace
+
+EnvelopeMargins envelope_margins(const Plan& plan, const Task& task) {
+  EnvelopeMargins margins{kSensor_m, kSensor_rad};
+  for (const ParameterSet& set : plan.parameter_sets) {
+    const double friction_m =
+        task.friction.high * set.thresholds.force_keep_N / plan.compliance.stiffness_Npm;
+    const double friction_rad =
+        task.friction.high * set.thresholds.torque_keep_Nm / plan.compliance.stiffness_Nmpr;
+    margins.position_m = std::max(
+        margins.position_m, kSensor_m + set.speeds.contact_mps * plan.latency_max_s + friction_m);
+    margins.angle_rad =
+        std::max(margins.angle_rad,
+                 kSensor_rad + set.speeds.contact_radps * plan.latency_max_s + friction_rad);
+  }
+  return margins;
+}
+
+Plan with_envelopes(const Plan& draft, const Task& task, std::span<const Chain> chains) {
+  std::vector<SeenByOutcome> seen(draft.steps.size());
+  for (const Chain& chain : chains) {
+    for (std::size_t i = 0; i < chain.moves.size(); ++i) {
+      seen[chain.steps[i]][static_cast<std::size_t>(chain.moves[i].outcome)].add(chain.moves[i]);
+    }
+  }
+  const EnvelopeMargins margins = envelope_margins(draft, task);
+  Plan plan = draft;
+  plan.check_envelopes = true;
+  for (std::size_t step = 0; step < plan.steps.size(); ++step) {
+    close_gap(seen[step]);
+    for (std::size_t outcome = 0; outcome < kOutcomes.size(); ++outcome) {
+      OutcomeRule& rule = plan.steps[step].outcomes[outcome];
+      const Seen& one = seen[step][outcome];
+      if (one.any) {
+        rule.envelope = widened(one.envelope, margins, plan.coordinates);
+      } else {
+        rule = {};
+      }
+    }
+  }
+  return plan;
+}
+
+bool stay_within(const Plan& plan, std::span<const Chain> chains) {
+  return std::all_of(chains.begin(), chains.end(), [&](const Chain& chain) {
+    return first_deviation(plan, chain) == chain.moves.size();
+  });
+}
+
+}  // namespace tenon::planner

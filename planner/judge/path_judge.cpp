@@ -1,0 +1,112 @@
+#include "planner/judge/path_judge.h"
+
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "planner/judge/approach_speeds.h"
+#include "planner/judge/envelopes.h"
+#include "shared/plan/codec.h"
+
+namespace tenon::planner {
+namespace {
+
+// How often the approach distances of a path may be lowered before it runs at contact speed.
+constexpr int kSpeedAttempts = 2;
+// How often envelopes may be widened to more draws.
+constexpr std::uint64_t kEnvelopeBatches = 4;
+
+void append(std::vector<Chain>& chains, const std::vector<Chain>& more) {
+  chains.insert(chains.end(), more.begin(), more.end());
+}
+
+/// In every physics.
+std::vector<Chain> chains_of(const Certification& certification) {
+  std::vector<Chain> chains;
+  for (const VariantRun& run : certification.runs) append(chains, run.chains);
+  return chains;
+}
+
+}  // namespace
+
+PathJudge::PathJudge(const Task& task, const Start& start, const Parameters& parameters,
+                     RolloutPool& pool, ClockSeconds now_s)
+    : task_(task), start_(start), parameters_(parameters), pool_(pool), now_s_(std::move(now_s)) {}
+
+Judgement PathJudge::judge(std::span<const Vector6> displacements) {
+  Plan slow = draft_plan(task_, start_, parameters_.assumptions, displacements);
+  slow.method = parameters_.method;
+  Certification at_contact_speed = certified(slow);
+  if (!at_contact_speed.holds()) return refutation_of(at_contact_speed);
+  if (slow.method != PlanMethod::kMha) return estimated(slow, std::move(at_contact_speed));
+
+  std::vector<double> distances_m =
+      slow_from(slow, chains_of(at_contact_speed), task_.particle_sigmas);
+  for (int attempt = 0; attempt < kSpeedAttempts && any_fast(distances_m); ++attempt) {
+    const Plan fast = with_slow_from(slow, distances_m);
+    Judgement judgement = at_speeds(fast, certified(fast), distances_m);
+    if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
+  }
+  return at_speeds(slow, std::move(at_contact_speed), distances_m);
+}
+
+Judgement PathJudge::at_speeds(const Plan& plan, Certification certification,
+                               std::vector<double>& distances_m) {
+  const auto refuted = [&](Refutation refutation) {
+    distances_m.assign(distances_m.size(), 0.0);
+    return refutation;
+  };
+  if (!certification.holds()) return refuted(refutation_of(certification));
+  const Validation validation = validated(plan, kSearchSeed);
+  if (auto miss = missed_draw(validation, task_.particle_sigmas)) return refuted(*miss);
+  if (shorten(plan, validation.good_chains(), distances_m)) {
+    return Refutation{{}, std::nullopt, "a draw met a contact before the tool was slow"};
+  }
+  std::vector<Chain> good = chains_of(certification);
+  append(good, validation.good_chains());
+  std::variant<Plan, Refutation> judged = widened(plan, std::move(good));
+  if (const auto* miss = std::get_if<Refutation>(&judged)) return refuted(*miss);
+  return estimated(std::get<Plan>(std::move(judged)), std::move(certification));
+}
+
+std::variant<Plan, Refutation> PathJudge::widened(const Plan& plan, std::vector<Chain> good) {
+  Plan judged = with_envelopes(plan, task_, good);
+  for (std::uint64_t batch = 0; batch < kEnvelopeBatches; ++batch) {
+    const Validation further = validated(plan, kEnvelopeSeed + batch);
+    if (auto miss = missed_draw(further, task_.particle_sigmas)) return *miss;
+    const std::vector<Chain> more = further.good_chains();
+    if (stay_within(judged, more)) break;
+    append(good, more);
+    judged = with_envelopes(plan, task_, good);
+  }
+  if (!stay_within(judged, good)) throw std::logic_error("an envelope excludes its own chain");
+  return judged;
+}
+
+Judgement PathJudge::estimated(Plan plan, Certification certification) {
+  Validation estimate = validated(plan, kEstimateSeed);
+  plan.cost = certification.cost;
+  plan.draws = static_cast<std::uint32_t>(estimate.draws.size());
+  plan.draws_at_goal = static_cast<std::uint32_t>(estimate.at_goal());
+  return JudgedPlan{std::move(plan), std::move(certification), std::move(estimate)};
+}
+
+Certification PathJudge::certified(const Plan& plan) {
+  Certification result = timed(now_s_, effort_.certification_s,
+                               [&] { return certify(encode_plan(plan), task_, pool_); });
+  for (const VariantRun& run : result.runs) {
+    for (const Chain& chain : run.chains) effort_.certification_moves += chain.steps.size();
+  }
+  return result;
+}
+
+Validation PathJudge::validated(const Plan& plan, std::uint64_t seed) {
+  Validation result = timed(now_s_, effort_.validation_s, [&] {
+    const ValidationParameters parameters{parameters_.draws, seed, seed != kEstimateSeed};
+    return validate(plan, task_, start_, parameters, pool_);
+  });
+  effort_.validation_moves += result.moves();
+  return result;
+}
+
+}  // namespace tenon::planner

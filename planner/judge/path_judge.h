@@ -1,0 +1,82 @@
+#pragma once
+// Whether a path becomes a plan: certified from its very bytes, brought to approach speed where
+// that holds, validated by draws, and given envelopes. What does not hold comes back as a
+// refutation; what to learn from it is not decided here.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "planner/belief/rollout_pool.h"
+#include "planner/judge/certification.h"
+#include "planner/judge/plan_draft.h"
+#include "planner/judge/refutation.h"
+#include "planner/judge/timed.h"
+#include "planner/judge/validation.h"
+#include "shared/plan/plan.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+/// A plan that holds, with its cost and its own estimate of its success; it has no bound yet, which
+/// only the search can tell.
+struct JudgedPlan {
+  Plan plan;
+  Certification certification;
+  Validation estimate;  ///< by the draws of kEstimateSeed
+};
+
+using Judgement = std::variant<JudgedPlan, Refutation>;
+
+/// What judging has taken so far.
+struct JudgeEffort {
+  std::uint64_t certification_moves = 0;  ///< simulated
+  std::uint64_t validation_moves = 0;
+  double certification_s = 0.0;
+  double validation_s = 0.0;
+};
+
+/// Of one task and start. One thread at a time; the pool starts its own.
+class PathJudge {
+ public:
+  struct Parameters {
+    /// A baseline is certified for its single particle alone. Its plan runs at contact speed
+    /// throughout, checks no envelope, and is validated but never refuted by draws.
+    PlanMethod method = PlanMethod::kMha;
+    CellAssumptions assumptions;
+    std::size_t draws = kDrawsMin;  ///< of each validation
+  };
+
+  /// task, start and pool must outlive this.
+  PathJudge(const Task& task, const Start& start, const Parameters& parameters, RolloutPool& pool,
+            ClockSeconds now_s);
+
+  /// @param displacements of the path's steps, values that a plan file can hold
+  /// @throws InputError where they cannot be represented as a plan
+  [[nodiscard]] Judgement judge(std::span<const Vector6> displacements);
+
+  [[nodiscard]] const JudgeEffort& effort() const { return effort_; }
+
+ private:
+  /// Where the plan does not hold at its speeds, the distances are lowered, to be tried next. At
+  /// contact speed throughout there is nothing to lower.
+  [[nodiscard]] Judgement at_speeds(const Plan& plan, Certification certification,
+                                    std::vector<double>& distances_m);
+  /// Envelopes around the chains, widened to more draws until all of a batch stay within them: what
+  /// one start in a hundred does is no reason to stop.
+  [[nodiscard]] std::variant<Plan, Refutation> widened(const Plan& plan, std::vector<Chain> good);
+  [[nodiscard]] Judgement estimated(Plan plan, Certification certification);
+  [[nodiscard]] Certification certified(const Plan& plan);
+  [[nodiscard]] Validation validated(const Plan& plan, std::uint64_t seed);
+
+  const Task& task_;
+  const Start& start_;
+  Parameters parameters_;
+  RolloutPool& pool_;
+  ClockSeconds now_s_;
+  JudgeEffort effort_;
+};
+
+}  // namespace tenon::planner

@@ -1,0 +1,30 @@
+#pragma once
+// From a path to a plan that is yet to be judged, through the bytes that a file would hold. Pure;
+// any thread.
+
+#include <span>
+
+#include "shared/plan/plan.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+/// What the plan assumes of the cell that will execute it.
+struct CellAssumptions {
+  double contact_stiffness_Npm = 5e4;
+  double latency_max_s = 0.010;  ///< (n + 1/2) T + tau_arm
+};
+
+/// A plan whose steps have these displacements and contact speed throughout, in which every outcome
+/// but a timeout leads on and no envelope is checked yet. As it comes back from its own bytes:
+/// every value is one that the file holds.
+/// @throws InputError where there are more than kMaxSteps steps
+[[nodiscard]] Plan draft_plan(const Task& task, const Start& start,
+                              const CellAssumptions& assumptions,
+                              std::span<const Vector6> displacements);
+
+/// The plan that its bytes say.
+/// @throws InputError where it cannot be represented
+[[nodiscard]] Plan through_bytes(const Plan& plan);
+
+}  // namespace tenon::planner

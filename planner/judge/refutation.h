@@ -1,0 +1,28 @@
+#pragma once
+// What speaks against a path: the chain that shows it, and why. Pure; any thread.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "planner/judge/certification.h"
+#include "planner/judge/chain.h"
+#include "planner/judge/validation.h"
+
+namespace tenon::planner {
+
+struct Refutation {
+  Chain chain;
+  std::optional<std::size_t> step;  ///< at which the chain went wrong, where that is known
+  std::string why;                  ///< one line
+};
+
+/// The earliest disagreement. @param certification one that does not hold
+[[nodiscard]] Refutation refutation_of(const Certification& certification);
+
+/// The first draw within the particles' reach that missed the goal; empty where all of them met it.
+/// @param particle_sigmas how far the particles reach, standard deviations
+[[nodiscard]] std::optional<Refutation> missed_draw(const Validation& validation,
+                                                    double particle_sigmas);
+
+}  // namespace tenon::planner

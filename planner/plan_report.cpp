@@ -1,0 +1,27 @@
+#include "planner/plan_report.h"
+
+namespace tenon::planner {
+
+const char* to_string(PlanStatus status) {
+  switch (status) {
+    case PlanStatus::kPlanned:
+      return "planned";
+    case PlanStatus::kInCollision:
+      return "in collision";
+    case PlanStatus::kAlreadyAtGoal:
+      return "already at the goal";
+    case PlanStatus::kExhausted:
+      return "open list exhausted";
+    case PlanStatus::kNoAttractor:
+      return "no attractor, open list exhausted";
+    case PlanStatus::kTimeLimit:
+      return "time limit";
+    case PlanStatus::kExpansionLimit:
+      return "expansion limit";
+    case PlanStatus::kNotCertified:
+      return "not certified";
+  }
+  return "?";
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,64 @@
+#pragma once
+// What planning came to: a plan or the reason why there is none, and what it took. Plain data; any
+// thread.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/belief/successor.h"
+#include "planner/judge/certification.h"
+#include "planner/judge/validation.h"
+#include "planner/search/mha_search.h"
+#include "shared/plan/plan.h"
+
+namespace tenon::planner {
+
+enum class PlanStatus : std::uint8_t {
+  kPlanned = 0,
+  kInCollision = 1,    ///< the start, a particle of it, or the goal
+  kAlreadyAtGoal = 2,  ///< nothing to plan: no step is needed
+  kExhausted = 3,      ///< the searched graph has no path left
+  kNoAttractor = 4,    ///< likewise, and no push makes the start more certain
+  kTimeLimit = 5,
+  kExpansionLimit = 6,
+  kNotCertified = 7,  ///< every path that was found was refuted, as often as the budget allows
+};
+[[nodiscard]] const char* to_string(PlanStatus status);
+
+/// Seconds spent in each part.
+struct PlannerTimes {
+  double attractors_s = 0.0;
+  double search_s = 0.0;
+  double certification_s = 0.0;
+  double validation_s = 0.0;
+};
+
+struct PlanReport {
+  PlanMethod method = PlanMethod::kMha;
+  PlanStatus status = PlanStatus::kExhausted;
+  std::string reason;               ///< one line where it is not kPlanned
+  std::optional<Plan> plan;         ///< where it is kPlanned
+  std::vector<std::uint8_t> bytes;  ///< of the plan, as a file has them
+
+  Certification certification;  ///< of the plan
+  Validation validation;        ///< by the draws of kEstimateSeed
+
+  // What it took.
+  SearchResult search;               ///< the last one
+  std::size_t expansions = 0;        ///< of all searches
+  std::size_t expansions_first = 0;  ///< of the first of them, before anything was refuted
+  std::size_t guides = 0;            ///< that led the searches
+  std::size_t states = 0;
+  std::vector<std::string> refusals;  ///< what was refuted, and why
+  std::vector<std::string> adapted;   ///< what the cell changed in the task, see fit_to_cell()
+  SuccessorEngine::Counters search_moves;
+  SuccessorEngine::Counters attractor_moves;
+  std::uint64_t certification_moves = 0;
+  std::uint64_t validation_moves = 0;
+  PlannerTimes times;
+};
+
+}  // namespace tenon::planner

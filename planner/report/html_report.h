@@ -1,0 +1,21 @@
+#pragma once
+// A plan on one page: why it works, its paths seen from where they can be seen, its uncertainty
+// step by step, and every step in a picture and in words.
+
+#include <string>
+
+#include "planner/judge/certification.h"
+#include "planner/judge/validation.h"
+#include "shared/plan/plan.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+/// One self-contained HTML document with inline SVG.
+/// @param certification of this plan; its first run gives the particles' paths
+/// @param validation drawn faintly; of a baseline also the uncertainty, which it does not know
+[[nodiscard]] std::string html_report(const Plan& plan, const Task& task,
+                                      const Certification& certification,
+                                      const Validation& validation);
+
+}  // namespace tenon::planner

@@ -1,0 +1,76 @@
+#include "planner/report/report_words.h"
+
+#include <algorithm>
+
+#include "planner/judge/shown.h"
+#include "shared/base/text.h"
+
+namespace tenon::planner {
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    safe += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  }
+  return safe;
+}
+
+std::string names_of(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + escaped(name);
+  return text;
+}
+
+std::string amount(double value, int axis) {
+  return format(axis < 3 ? "%.1f mm" : "%.2f&deg;", shown(value, axis));
+}
+
+std::string spread_text(const Plan& plan, const Vector6& spread) {
+  std::string text;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(plan.coordinates, axis)) continue;
+    text += (text.empty() ? "" : ", ") + std::string(axis_name(axis)) + " " +
+            amount(spread[axis], axis);
+  }
+  return text;
+}
+
+std::string displacement_text(const Step& step) {
+  std::string text;
+  for (int axis = 0; axis < 6; ++axis) {
+    const double d = step.displacement[axis];
+    if (d == 0.0) continue;
+    text += (text.empty() ? "" : ", ") +
+            format(axis < 3 ? "%s %+.0f mm" : "%s %+.1f&deg;", axis_name(axis), shown(d, axis));
+  }
+  return text;
+}
+
+std::string outcomes_text(const ReportData& data, std::size_t step) {
+  std::string text;
+  for (const Outcome outcome : kOutcomes) {
+    const auto count =
+        std::count_if(data.chains.begin(), data.chains.end(),
+                      [&](const Chain& chain) { return chain.moves[step].outcome == outcome; });
+    if (count == 0) continue;
+    text +=
+        (text.empty() ? "" : ", ") + format("%d %s", static_cast<int>(count), to_string(outcome));
+  }
+  return text;
+}
+
+std::string shrinkages(const ReportData& data, std::size_t step) {
+  std::string html;
+  if (step + 1 >= data.nodes.size()) return html;
+  for (int axis = 0; axis < 6; ++axis) {
+    const double before = data.nodes[step].spread[axis];
+    const double after = data.nodes[step + 1].spread[axis];
+    if (before - after < kWorthTelling) continue;
+    const std::string text = std::string(axis_name(axis)) + " " + amount(before, axis) +
+                             " &rarr; " + amount(after, axis);
+    html += "<br>" + (after < kCollapsed * before ? "<b>" + text + "</b>" : text);
+  }
+  return html;
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,36 @@
+#pragma once
+// The page's words: names, amounts and outcomes as HTML. Pure; any thread.
+
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "planner/report/report_data.h"
+
+namespace tenon::planner {
+
+/// A direction counts as settled once its spread is below this part of what it was.
+inline constexpr double kCollapsed = 0.2;
+inline constexpr double kWorthTelling = 2e-3;  ///< m or rad
+
+/// With <, > and & as HTML wants them.
+[[nodiscard]] std::string escaped(const std::string& text);
+
+/// "wall, table", escaped.
+[[nodiscard]] std::string names_of(const std::set<std::string>& names);
+
+/// "1.2 mm" or degrees, of m or rad.
+[[nodiscard]] std::string amount(double value, int axis);
+
+/// The coordinates of the plan, each with an amount.
+[[nodiscard]] std::string spread_text(const Plan& plan, const Vector6& spread);
+
+[[nodiscard]] std::string displacement_text(const Step& step);
+
+/// How many particles had which outcome in the step: "3 contact, 1 reached".
+[[nodiscard]] std::string outcomes_text(const ReportData& data, std::size_t step);
+
+/// What a step makes more certain, an item a direction; bold where it settles.
+[[nodiscard]] std::string shrinkages(const ReportData& data, std::size_t step);
+
+}  // namespace tenon::planner

@@ -1,0 +1,198 @@
+#include "planner/report/summary.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "planner/judge/shown.h"
+#include "shared/base/text.h"
+#include "shared/task/inserted.h"
+
+namespace tenon::planner {
+namespace {
+
+std::string displacement_text(const Plan& plan, const Vector6& displacement) {
+  std::string text;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(plan.coordinates, axis) || displacement[axis] == 0.0) continue;
+    text += format("%s%s %+.1f", text.empty() ? "" : ", ", axis_name(axis),
+                   shown(displacement[axis], axis));
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string successor_text(Successor successor) {
+  return successor == kSuccessorDone ? " -> done\n"
+                                     : format(" -> %d\n", static_cast<int>(successor));
+}
+
+std::string envelope_text(const Plan& plan, const Envelope& envelope) {
+  std::string text;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(plan.coordinates, axis)) continue;
+    text += format(" %s [%.1f, %.1f]", axis_name(axis), shown(envelope.travelled_min[axis], axis),
+                   shown(envelope.travelled_max[axis], axis));
+  }
+  text += "  contacts " + to_string(envelope.always);
+  const ContactSignature sometimes{
+      static_cast<std::uint16_t>(envelope.possible.bits & ~envelope.always.bits)};
+  if (sometimes.count() > 0) text += ", perhaps " + to_string(sometimes);
+  return text;
+}
+
+/// A line for each outcome that leads on; without envelopes, one for all that lead to one step.
+std::string rules_text(const Plan& plan, const Step& step) {
+  std::string text;
+  std::map<Successor, std::string> names_to;
+  for (const Outcome outcome : kOutcomes) {
+    const OutcomeRule& rule = step.rule(outcome);
+    if (rule.successor == kSuccessorFail) continue;
+    if (plan.check_envelopes) {
+      text += format("       %-8s", to_string(outcome)) + envelope_text(plan, rule.envelope) + " " +
+              successor_text(rule.successor);
+    } else {
+      std::string& names = names_to[rule.successor];
+      names += (names.empty() ? "" : ", ") + std::string(to_string(outcome));
+    }
+  }
+  for (const auto& [successor, names] : names_to) {
+    text += "       " + names + successor_text(successor);
+  }
+  return text;
+}
+
+double peak_force_N(const PlanReport& report) {
+  double peak_N = 0.0;
+  for (const Draw& draw : report.validation.draws) {
+    for (const GuardedMove::Result& move : draw.chain.moves) {
+      peak_N = std::max(peak_N, move.peak_force_N);
+    }
+  }
+  return peak_N;
+}
+
+/// A line for every draw that missed the goal: how unlikely its start was, and what stopped it.
+std::vector<std::string> missed(const PlanReport& report, const Task& task) {
+  std::vector<std::string> lines;
+  for (const Draw& draw : report.validation.draws) {
+    if (draw.at_goal) continue;
+    const Chain& chain = draw.chain;
+    const std::string what =
+        chain.done
+            ? format("ended %.2f mm and %.2f degrees from the goal",
+                     1e3 * (chain.end().position_m - task.goal.position_m).norm(),
+                     shown(chain.end().orientation.angularDistance(task.goal.orientation), 3)) +
+                  (inserted(task, chain.end()) ? "" : ", not inserted")
+            : format("step %zu: ", chain.steps.back()) + chain.failure;
+    lines.push_back(format("%.2f sigma out, ", draw.mahalanobis) + what);
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::string cost_text(const Plan& plan) {
+  return format("cost %.0f, ", plan.cost) +
+         (plan.bound > 0.0
+              ? format("at most %.2f times the optimum of the searched graph\n", plan.bound)
+              : "no bound proven\n");
+}
+
+std::string estimate_text(const Validation& validation, const Task& task) {
+  const auto arrived = std::count_if(validation.rim.begin(), validation.rim.end(),
+                                     [](const Draw& draw) { return draw.at_goal; });
+  return format(
+      "%zu of %zu draws end at the goal (%zu of %zu within %g sigma), and %zu of %zu on the rim",
+      validation.at_goal(), validation.draws.size(),
+      validation.at_goal_within(task.particle_sigmas), validation.within(task.particle_sigmas),
+      task.particle_sigmas, static_cast<std::size_t>(arrived), validation.rim.size());
+}
+
+std::string step_table(const Plan& plan) {
+  std::string text = "step   displacement (mm, deg)    slow from (mm)\n";
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    const Step& step = plan.steps[i];
+    text += format("%4zu   %-25s %8.1f\n", i, displacement_text(plan, step.displacement).c_str(),
+                   1e3 * step.slow_from_m);
+    text += rules_text(plan, step);
+  }
+  return text;
+}
+
+std::string summary(const PlanReport& report, const Task& task, const std::string& file) {
+  const Plan& plan = *report.plan;
+  const PlannerTimes& t = report.times;
+  const auto moves = [](const SuccessorEngine::Counters& c) {
+    return static_cast<unsigned long long>(c.rollouts);
+  };
+  std::string text;
+  text += format("%s: start %s of %s, method %s, %zu steps, %zu bytes\n", file.c_str(),
+                 plan.start_name.c_str(), plan.task_name.c_str(), to_string(plan.method),
+                 plan.steps.size(), report.bytes.size());
+  text += cost_text(plan);
+  text += format(
+      "search: %zu expansions (%zu for the first path), %zu states, %zu guides, "
+      "%zu refuted paths\n",
+      report.expansions, report.expansions_first, report.states, report.guides,
+      report.refusals.size());
+  text += format(
+      "simulated moves: %llu attractors, %llu search (%llu known), %llu certification, "
+      "%llu validation\n",
+      moves(report.attractor_moves), moves(report.search_moves),
+      static_cast<unsigned long long>(report.search_moves.memo_hits),
+      static_cast<unsigned long long>(report.certification_moves),
+      static_cast<unsigned long long>(report.validation_moves));
+  text +=
+      format("time: %.2f s attractors, %.2f s search, %.2f s certification, %.2f s validation\n",
+             t.attractors_s, t.search_s, t.certification_s, t.validation_s);
+  text += "validation: " + estimate_text(report.validation, task) +
+          format(", peak force %.0f N\n", peak_force_N(report));
+  for (const std::string& draw : missed(report, task)) text += "missed: " + draw + "\n";
+  for (const std::string& change : report.adapted) text += "for the cell: " + change + "\n";
+  for (const std::string& refusal : report.refusals) text += "refuted: " + refusal + "\n";
+  return text + step_table(plan);
+}
+
+std::string statistics_json(const PlanReport& report, const Task& task) {
+  const auto moves = [](const SuccessorEngine::Counters& c) {
+    return nlohmann::ordered_json{
+        {"simulated", c.rollouts}, {"memo_hits", c.memo_hits}, {"failures", c.failures}};
+  };
+  nlohmann::ordered_json json;
+  json["status"] = to_string(report.status);
+  json["reason"] = report.reason;
+  json["method"] = to_string(report.method);
+  json["guides"] = report.guides;
+  json["states"] = report.states;
+  json["expansions"] = report.expansions;
+  json["expansions_first"] = report.expansions_first;
+  json["refusals"] = report.refusals;
+  json["adapted"] = report.adapted;
+  json["moves"] = {{"attractors", moves(report.attractor_moves)},
+                   {"search", moves(report.search_moves)},
+                   {"certification", report.certification_moves},
+                   {"validation", report.validation_moves}};
+  json["time_s"] = {{"attractors", report.times.attractors_s},
+                    {"search", report.times.search_s},
+                    {"certification", report.times.certification_s},
+                    {"validation", report.times.validation_s}};
+  if (report.plan) {
+    json["start"] = report.plan->start_name;
+    json["steps"] = report.plan->steps.size();
+    json["bytes"] = report.bytes.size();
+    json["cost"] = report.plan->cost;
+    json["bound"] = report.plan->bound;
+    json["search_cost"] = report.search.cost;
+    json["search_lower_bound"] = report.search.lower_bound;
+    json["draws"] = report.plan->draws;
+    json["draws_at_goal"] = report.plan->draws_at_goal;
+    json["particle_sigmas"] = task.particle_sigmas;
+    json["draws_within_particles"] = report.validation.within(task.particle_sigmas);
+    json["draws_within_particles_at_goal"] = report.validation.at_goal_within(task.particle_sigmas);
+    json["missed"] = missed(report, task);
+    json["peak_force_N"] = peak_force_N(report);
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,30 @@
+#pragma once
+// A planning run in words and in JSON.
+
+#include <string>
+
+#include "planner/judge/validation.h"
+#include "planner/plan_report.h"
+#include "shared/plan/plan.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+/// "cost 8250, at most 2.04 times the optimum of the searched graph".
+[[nodiscard]] std::string cost_text(const Plan& plan);
+
+/// The plan's own estimate of its success: "190 of 200 draws end at the goal (176 of 176 within 2
+/// sigma)".
+[[nodiscard]] std::string estimate_text(const Validation& validation, const Task& task);
+
+/// A table with a line for each step: displacement, speeds, outcomes with envelopes, successors.
+[[nodiscard]] std::string step_table(const Plan& plan);
+
+/// A dozen lines for people about a plan that was found.
+[[nodiscard]] std::string summary(const PlanReport& report, const Task& task,
+                                  const std::string& file);
+
+/// Keys are documented in planner/README.md.
+[[nodiscard]] std::string statistics_json(const PlanReport& report, const Task& task);
+
+}  // namespace tenon::planner

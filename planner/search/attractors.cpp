@@ -1,0 +1,305 @@
+#include "planner/search/attractors.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "shared/base/random.h"
+
+namespace tenon::planner {
+namespace {
+
+// Guides take turns, so every further one multiplies the expansions.
+constexpr std::size_t kMaxGuides = 2;
+// How far beyond w2 times the anchor a guide may begin: not at all.
+constexpr double kWithinAnchor = 0.98;
+// A sample that collides is drawn again, this often.
+constexpr int kAttempts = 20;
+// Every order of contacts is tried, so there are not to be too many.
+constexpr std::size_t kMaxContactsAnAxis = 8;
+constexpr std::uint64_t kSampleSeed = 1;
+
+/// Corners of a box, along the task's axes, around everything that can be touched.
+Eigen::AlignedBox3d around(const std::vector<Shape>& shapes) {
+  Eigen::AlignedBox3d box;
+  for (const Shape& shape : shapes) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3 sign((corner & 1) != 0 ? 0.5 : -0.5, (corner & 2) != 0 ? 0.5 : -0.5,
+                         (corner & 4) != 0 ? 0.5 : -0.5);
+      box.extend(shape.pose.position_m +
+                 shape.pose.orientation * shape.size_m.cwiseProduct(sign).eval());
+    }
+  }
+  return box;
+}
+
+/// The step labels count two directions an axis.
+int axis_of(const Primitive& push) { return push.label / 2; }
+
+/// Into a held contact or straight away from it.
+bool pushes_along(const Primitive& primitive, ContactSignature signature) {
+  for (int axis = 0; axis < 6; ++axis) {
+    if (signature.sign(axis) != 0 && primitive.displacement[axis] != 0.0) return true;
+  }
+  return false;
+}
+
+/// Outside of the nearest place where a certain tool that is drawn straight out of the goal along
+/// a contact loses it. The tool first presses against each side of the goal.
+std::optional<Pose> mouth_of_goal(const Task& task, Particle certain, SuccessorEngine& succ) {
+  const std::vector<Primitive> pushes = long_primitives(task);
+  certain.pose = task.goal;
+  std::optional<Pose> nearest;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const auto& pressed : succ.successors(Belief{{certain}}, pushes)) {
+    if (!pressed || pressed->particles.front().signature.count() == 0) continue;
+    const ContactSignature before = pressed->particles.front().signature;
+    const auto ends = succ.successors(*pressed, pushes);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (!ends[i] || pushes_along(pushes[i], before)) continue;
+      const Particle& end = ends[i]->particles.front();
+      if (end.signature.count() >= before.count()) continue;
+      const int axis = axis_of(pushes[i]);
+      Vector6 out = Vector6::Zero();
+      out[axis] = displacement_between(task.goal, end.pose)[axis];
+      out[axis] += std::copysign(task.goal_tolerance_m, out[axis]);
+      if (std::abs(out[axis]) >= nearest_m) continue;
+      nearest = displaced(task.goal, out);
+      nearest_m = std::abs(out[axis]);
+    }
+  }
+  return nearest;
+}
+
+class GuideSearch {
+ public:
+  GuideSearch(const Task& task, const Belief& start, SuccessorEngine& succ,
+              const std::function<bool()>& stop)
+      : task_(task),
+        primitives_(long_primitives(task)),
+        start_(start),
+        seed_(summarise(start, task)),
+        succ_(succ),
+        stop_(stop) {}
+
+  /// Pushes along every axis that has not been pushed along yet, and on from there.
+  void push_from(const Belief& belief, const std::vector<ContactAttractor>& before) {
+    if (stopped()) return;
+    std::vector<Primitive> pushes = primitives_;
+    std::erase_if(pushes, [&](const Primitive& push) { return contains(before, axis_of(push)); });
+    const BeliefSummary from = summarise(belief, task_);
+    const auto ends = succ_.successors(belief, pushes);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (!ends[i]) continue;
+      const int axis = axis_of(pushes[i]);
+      const BeliefSummary end = summarise(*ends[i], task_);
+      const bool together = end.spread[axis] < task_.attractor_ratio * from.spread[axis];
+      if (!together || end.uncertainty_m2 >= from.uncertainty_m2) continue;
+      std::vector<ContactAttractor> contacts = before;
+      contacts.push_back({axis, end.mean, end.spread[axis], end.uncertainty_m2, std::nullopt});
+      keep(contacts);
+      if (end.uncertainty_m2 > task_.goal_uncertainty_m2) push_from(*ends[i], contacts);
+    }
+  }
+
+  /// Whether the guides found so far lead to the goal's certainty.
+  [[nodiscard]] bool certain() const {
+    return std::any_of(found_.begin(), found_.end(), [this](const Guide& guide) {
+      return guide.contacts.back().uncertainty_m2 <= task_.goal_uncertainty_m2;
+    });
+  }
+
+  /// The start's spread about another place; empty where the part would not fit there.
+  [[nodiscard]] Belief spread_about(const Pose& place, Rollout& rollout) const {
+    Belief belief;
+    for (Particle particle : start_.particles) {
+      particle.pose = displaced(place, displacement_between(seed_.mean, particle.pose));
+      if (rollout.in_collision(particle.pose)) return {};
+      belief.particles.push_back(particle);
+    }
+    return belief;
+  }
+
+  /// Pushes from drawn places with the start's spread, then guides that go from one of the contacts
+  /// to the next: for parts that a push from the start does not meet.
+  void sample(Rollout& rollout) {
+    std::array<std::vector<ContactAttractor>, 6> known;
+    for (const Guide& guide : found_) {
+      const ContactAttractor& contact = guide.contacts.front();
+      auto& of_axis = known[static_cast<std::size_t>(contact.axis)];
+      if (find_known(contact, of_axis) == of_axis.end()) of_axis.push_back(contact);
+    }
+    Random random(kSampleSeed);
+    for (std::size_t i = 0; i < task_.attractor_samples && !stopped(); ++i) {
+      const Belief belief = drawn(random, rollout);
+      if (!belief.particles.empty()) push_once(belief, known);
+    }
+    combine(known, seed_.uncertainty_m2, {});
+  }
+
+  /// The cheapest guides, scaled.
+  [[nodiscard]] std::vector<Guide> take() {
+    const auto cost = [&](const Guide& guide) { return foliated_heuristic(seed_, guide, task_); };
+    const auto left_m2 = [](const Guide& guide) { return guide.contacts.back().uncertainty_m2; };
+    double enough_m2 = std::numeric_limits<double>::infinity();
+    for (const Guide& guide : found_) enough_m2 = std::min(enough_m2, left_m2(guide));
+    enough_m2 = std::max(enough_m2, task_.goal_uncertainty_m2);
+    std::erase_if(found_, [&](const Guide& guide) { return left_m2(guide) > enough_m2; });
+    std::stable_sort(found_.begin(), found_.end(),
+                     [&](const Guide& a, const Guide& b) { return cost(a) < cost(b); });
+    if (found_.size() > kMaxGuides) found_.resize(kMaxGuides);
+    const double allowed = kWithinAnchor * task_.w2 * anchor_heuristic(seed_, task_);
+    for (Guide& guide : found_) {
+      const double whole = cost(guide);
+      guide.contact_scale = 0.0;
+      const double way = cost(guide);
+      guide.contact_scale = std::clamp((allowed - way) / (whole - way), 0.0, 1.0);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
+
+  [[nodiscard]] static bool contains(const std::vector<ContactAttractor>& contacts, int axis) {
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [axis](const ContactAttractor& contact) { return contact.axis == axis; });
+  }
+
+  /// Unless the same faces are known in the same order.
+  void keep(const std::vector<ContactAttractor>& contacts) {
+    const auto same_face = [this](const ContactAttractor& a, const ContactAttractor& b) {
+      const double apart = std::abs(displacement_between(a.mean, b.mean)[a.axis]);
+      return a.axis == b.axis && apart < 0.5 * (a.axis < 3 ? task_.step_m : task_.step_rad) &&
+             a.via.has_value() == b.via.has_value();
+    };
+    for (const Guide& other : found_) {
+      if (std::equal(contacts.begin(), contacts.end(), other.contacts.begin(), other.contacts.end(),
+                     same_face)) {
+        return;
+      }
+    }
+    found_.push_back({contacts, {task_.goal}, 1.0});
+  }
+
+  /// The start's spread about a place near what can be touched; empty where no free one was drawn.
+  [[nodiscard]] Belief drawn(Random& random, Rollout& rollout) const {
+    Eigen::AlignedBox3d box = around(task_.environment);
+    const Vector3 reach = around(task_.held).sizes() + Vector3::Constant(task_.step_m);
+    box.min() -= reach;
+    box.max() += reach;
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      Pose place = seed_.mean;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!has(task_.coordinates, axis)) continue;
+        place.position_m[axis] = box.min()[axis] + random.uniform() * box.sizes()[axis];
+      }
+      Belief belief = spread_about(place, rollout);
+      if (!belief.particles.empty()) return belief;
+    }
+    return {};
+  }
+
+  /// Adds the contacts that one push along each axis makes.
+  void push_once(const Belief& belief, std::array<std::vector<ContactAttractor>, 6>& known) {
+    const BeliefSummary from = summarise(belief, task_);
+    const auto ends = succ_.successors(belief, primitives_);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (!ends[i]) continue;
+      const int axis = axis_of(primitives_[i]);
+      const BeliefSummary end = summarise(*ends[i], task_);
+      if (end.spread[axis] >= task_.attractor_ratio * from.spread[axis]) continue;
+      auto& of_axis = known[static_cast<std::size_t>(axis)];
+      const ContactAttractor contact{axis, end.mean, end.spread[axis], 0.0, from.mean};
+      const auto same = find_known(contact, of_axis);
+      if (same != of_axis.end()) {
+        if (contact.spread < same->spread) *same = contact;
+      } else if (of_axis.size() < kMaxContactsAnAxis) {
+        of_axis.push_back(contact);
+      }
+    }
+  }
+
+  /// The same face, met from where a step more or less makes no difference.
+  [[nodiscard]] std::vector<ContactAttractor>::iterator find_known(
+      const ContactAttractor& contact, std::vector<ContactAttractor>& others) const {
+    return std::find_if(others.begin(), others.end(), [&](const ContactAttractor& other) {
+      const Vector6 apart = displacement_between(contact.mean, other.mean);
+      return std::abs(apart[contact.axis]) < 0.1 * task_.step_m &&
+             (!other.via || apart.head<3>().norm() < task_.step_m);
+    });
+  }
+
+  /// Every order of one contact for every axis that is uncertain.
+  void combine(const std::array<std::vector<ContactAttractor>, 6>& known, double uncertainty_m2,
+               const std::vector<ContactAttractor>& before) {
+    bool last = true;
+    for (int axis = 0; axis < 6; ++axis) {
+      if (seed_.spread[axis] <= 0.0 || contains(before, axis)) continue;
+      for (ContactAttractor contact : known[static_cast<std::size_t>(axis)]) {
+        const double left_m2 = weight_of(axis) * contact.spread * contact.spread;
+        contact.uncertainty_m2 = std::max(0.0, uncertainty_m2 - share_of(axis)) + left_m2;
+        std::vector<ContactAttractor> contacts = before;
+        contacts.push_back(contact);
+        combine(known, contact.uncertainty_m2, contacts);
+        last = false;
+      }
+    }
+    if (last && !before.empty()) keep(before);
+  }
+
+  /// What an axis contributes to the start's uncertainty, m^2.
+  [[nodiscard]] double share_of(int axis) const {
+    double sum = 0.0;
+    for (const Particle& particle : start_.particles) {
+      const double off = displacement_between(seed_.mean, particle.pose)[axis];
+      sum += off * off;
+    }
+    return weight_of(axis) * sum / static_cast<double>(start_.particles.size());
+  }
+
+  [[nodiscard]] double weight_of(int axis) const {
+    return axis < 3 ? 1.0 : task_.orientation_weight;
+  }
+
+  const Task& task_;
+  std::vector<Primitive> primitives_;
+  const Belief& start_;
+  BeliefSummary seed_;
+  SuccessorEngine& succ_;
+  const std::function<bool()>& stop_;
+  std::vector<Guide> found_;
+};
+
+}  // namespace
+
+Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngine& succ,
+                           Rollout& rollout, const std::function<bool()>& stop) {
+  GuideSearch search(task, start, succ, stop);
+  search.push_from(start, {});
+  const Belief about_goal = search.spread_about(task.goal, rollout);
+  if (!about_goal.particles.empty()) search.push_from(about_goal, {});
+  if (!search.certain()) search.sample(rollout);
+
+  Attractors found{search.take(), goal_attractors(task, start, succ)};
+  if (found.goals.size() > 1 && !found.guides.empty()) {
+    Guide through = found.guides.front();
+    through.goals.insert(through.goals.begin(), found.goals.back());
+    found.guides.push_back(std::move(through));
+  }
+  return found;
+}
+
+std::vector<Pose> goal_attractors(const Task& task, const Belief& start, SuccessorEngine& succ) {
+  std::vector<Pose> goals = {task.goal};
+  if (const std::optional<Pose> mouth = mouth_of_goal(task, start.particles.front(), succ)) {
+    goals.push_back(*mouth);
+  }
+  return goals;
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,38 @@
+#pragma once
+// Where uncertainty shrinks: beliefs after long pushes, found with a few dozen rollouts, and the
+// guides that lead from one to the next.
+
+#include <functional>
+#include <vector>
+
+#include "planner/belief/successor.h"
+#include "planner/search/heuristics.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+struct Attractors {
+  std::vector<Guide> guides;
+  /// Goal attractors, which the search may move to straight: the goal, and the mouth of a hole.
+  std::vector<Pose> goals;
+};
+
+/// Long pushes along one search axis after the other, from the start and with the start's spread
+/// about the goal. A push is a contact attractor where the particles then stand within c_u times
+/// their spread before it. Where these leave more than the goal's uncertainty, pushes from drawn
+/// places near the environment (`attractor_samples` of them) are added. Guides are the cheapest
+/// sequences of contacts that leave no more than the goal's uncertainty (or the most certain ones,
+/// where none does), and the cheapest of them once more by way of the mouth: outside of the place
+/// where a tool drawn straight out of the goal along a contact loses it.
+/// @param succ with moves at approach speed and time for long ones
+/// @param rollout asked for collisions only
+/// @param stop asked before every push where not empty; true leaves it at what has been found
+[[nodiscard]] Attractors find_attractors(const Task& task, const Belief& start,
+                                         SuccessorEngine& succ, Rollout& rollout,
+                                         const std::function<bool()>& stop = {});
+
+/// The goals alone, for a search without guides.
+[[nodiscard]] std::vector<Pose> goal_attractors(const Task& task, const Belief& start,
+                                                SuccessorEngine& succ);
+
+}  // namespace tenon::planner

@@ -1,0 +1,33 @@
+#pragma once
+// What leads the search towards certainty: contacts in turn, then the goal. Plain data; any thread.
+
+#include <optional>
+#include <vector>
+
+#include "shared/math/pose.h"
+
+namespace tenon::planner {
+
+/// A push along one axis after which the particles stand together along it: contact with a face, or
+/// the loss of one at its edge.
+struct ContactAttractor {
+  int axis = 0;
+  Pose mean;            ///< of the belief after the push
+  double spread = 0.0;  ///< along the axis after the push, m or rad
+  double uncertainty_m2 = 0.0;
+  /// Where a push must begin that would miss a small face from elsewhere; the coordinate along the
+  /// axis does not count. Empty for a face that may be met anywhere.
+  std::optional<Pose> via;
+};
+
+/// Where an inadmissible heuristic leads: to contacts in turn, then past goal attractors, of which
+/// the last is the goal.
+struct Guide {
+  std::vector<ContactAttractor> contacts;
+  std::vector<Pose> goals;
+  /// What the contacts cost is several times what the anchor knows of, and a guide leads only while
+  /// it is within w2 of the anchor: so that part of it is scaled down to begin there.
+  double contact_scale = 1.0;
+};
+
+}  // namespace tenon::planner

@@ -1,0 +1,67 @@
+#include "planner/searched_graph.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tenon::planner {
+namespace {
+
+// A chain that stays this close to the search's particles has done as they did.
+constexpr double kForeseen_m = 1e-4;
+
+bool same_start(const Particle& a, const Particle& b) {
+  return a.pose == b.pose && a.physics == b.physics;
+}
+
+}  // namespace
+
+SearchedGraph::SearchedGraph(const Task& task, Belief start, Attractors attractors,
+                             SuccessorEngine& succ)
+    : task_(task), belief_(std::move(start)), attractors_(std::move(attractors)), succ_(succ) {
+  graph_.emplace(task_, belief_, attractors_, succ_);
+}
+
+std::vector<Vector6> SearchedGraph::displacements(const std::vector<PathEdge>& path) const {
+  std::vector<Vector6> displacements;
+  displacements.reserve(path.size());
+  for (const PathEdge& edge : path) {
+    displacements.push_back(graph_->displacement(edge.from, edge.label));
+  }
+  return displacements;
+}
+
+std::optional<std::size_t> SearchedGraph::learn(const Refutation& refutation,
+                                                const std::vector<PathEdge>& path) {
+  std::vector<Particle>& particles = belief_.particles;
+  Particle start = refutation.chain.start;
+  // The chain has it from the plan's bytes, which are not as precise.
+  start.physics.contact_stiffness_Npm = particles.front().physics.contact_stiffness_Npm;
+  const auto known = std::find_if(particles.begin(), particles.end(),
+                                  [&](const Particle& p) { return same_start(p, start); });
+  if (known == particles.end()) {
+    particles.push_back(start);
+    states_before_ += graph_->size();
+    graph_.emplace(task_, belief_, attractors_, succ_);
+    return std::nullopt;
+  }
+  const auto particle = static_cast<std::size_t>(known - particles.begin());
+  const std::size_t step =
+      refutation.step ? *refutation.step : departure(refutation.chain, particle, path);
+  succ_.refuse(graph_->belief(path[step].from).particles[particle],
+               graph_->displacement(path[step].from, path[step].label));
+  return step;
+}
+
+std::size_t SearchedGraph::departure(const Chain& chain, std::size_t particle,
+                                     const std::vector<PathEdge>& path) const {
+  for (std::size_t i = 0; i < chain.moves.size(); ++i) {
+    const Particle& foreseen = graph_->belief(path[chain.steps[i]].to).particles[particle];
+    if (chain.moves[i].signature != foreseen.signature ||
+        displacement_between(foreseen.pose, chain.moves[i].pose).norm() > kForeseen_m) {
+      return chain.steps[i];
+    }
+  }
+  return chain.steps.back();
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,50 @@
+#pragma once
+// The graph that is searched round after round, and what refuted paths teach it: particles that it
+// gains, moves that it loses.
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "planner/belief/belief.h"
+#include "planner/belief/successor.h"
+#include "planner/judge/refutation.h"
+#include "planner/search/attractors.h"
+#include "planner/search/belief_graph.h"
+#include "planner/search/mha_search.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+/// One thread at a time.
+class SearchedGraph {
+ public:
+  /// task and succ must outlive this.
+  SearchedGraph(const Task& task, Belief start, Attractors attractors, SuccessorEngine& succ);
+
+  [[nodiscard]] BeliefGraph& graph() { return *graph_; }
+  /// Those of the graphs before, too.
+  [[nodiscard]] std::size_t states() const { return states_before_ + graph_->size(); }
+  /// One a step of a path that was found in graph().
+  [[nodiscard]] std::vector<Vector6> displacements(const std::vector<PathEdge>& path) const;
+
+  /// A chain from a start that the search did not know of makes that start a particle: graph()
+  /// begins anew. Otherwise the search was wrong about a move, and does without it.
+  /// @return the step whose move is gone; empty where there is a new particle
+  std::optional<std::size_t> learn(const Refutation& refutation, const std::vector<PathEdge>& path);
+
+ private:
+  /// The step in which a chain leaves what the search had foreseen for its particle; the last one
+  /// where it does not.
+  [[nodiscard]] std::size_t departure(const Chain& chain, std::size_t particle,
+                                      const std::vector<PathEdge>& path) const;
+
+  const Task& task_;
+  Belief belief_;  // the start's particles, and the starts that refuted a path
+  Attractors attractors_;
+  SuccessorEngine& succ_;
+  std::optional<BeliefGraph> graph_;
+  std::size_t states_before_ = 0;
+};
+
+}  // namespace tenon::planner

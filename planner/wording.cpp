@@ -1,0 +1,71 @@
+#include "planner/wording.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "shared/base/text.h"
+
+namespace tenon::planner {
+namespace {
+
+/// How near the search has come.
+std::string nearest(const BeliefGraph& graph) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double certain_m2 = nearest_m;
+  for (StateId state = 0; state < graph.size(); ++state) {
+    const BeliefSummary& belief = graph.summary(state);
+    nearest_m = std::min(nearest_m, belief.farthest_m);
+    certain_m2 = std::min(certain_m2, belief.uncertainty_m2);
+  }
+  return format(
+      " (the nearest had all particles within %.1f mm of the goal, the most certain %.2g m^2)",
+      1e3 * nearest_m, certain_m2);
+}
+
+/// What has been tried by then.
+std::string tried(const PlanReport& report, const BeliefGraph& graph) {
+  return format("%zu expansions and %zu refuted paths", report.expansions, report.refusals.size()) +
+         nearest(graph) +
+         (report.refusals.empty() ? "" : "; last refuted: " + report.refusals.back());
+}
+
+}  // namespace
+
+std::string guides_found(std::size_t guides, std::uint64_t moves) {
+  return format("%zu guides, found with %llu moves", guides,
+                static_cast<unsigned long long>(moves));
+}
+
+std::string path_found(const SearchResult& search) {
+  return format("a path of %zu steps after %zu expansions", search.path.size(),
+                search.expanded.size());
+}
+
+std::string lesson(const Refutation& refutation, std::optional<std::size_t> refused_step) {
+  return refutation.why + (refused_step ? format("; its move in step %zu is refused", *refused_step)
+                                        : "; it becomes a particle");
+}
+
+std::string already_at_goal(const Start& start) {
+  return "start '" + start.name + "' is already within the goal's tolerances";
+}
+
+std::string no_path(PlanStatus status, const PlanReport& report, const BeliefGraph& graph,
+                    const Task& task, std::size_t expansions_max) {
+  std::string what = "the searched graph has no path left after ";
+  if (status == PlanStatus::kTimeLimit) {
+    what = format("no path within %g s (raise --time-limit), after ", task.time_limit_s);
+  } else if (status == PlanStatus::kExpansionLimit) {
+    what = format("%zu expansions in a search, the limit: no path after ", expansions_max);
+  } else if (status == PlanStatus::kNoAttractor) {
+    what = "no push from the start reduces its uncertainty, and no path exists after ";
+  }
+  return what + tried(report, graph);
+}
+
+std::string every_path_refuted(const PlanReport& report, std::size_t paths) {
+  return format("every one of %zu paths was refuted, the last one: ", paths) +
+         report.refusals.back();
+}
+
+}  // namespace tenon::planner

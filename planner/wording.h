@@ -1,0 +1,36 @@
+#pragma once
+// The words in which the planner says what it has found, what it has learnt, and why there is no
+// plan. Pure; any thread.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "planner/judge/refutation.h"
+#include "planner/plan_report.h"
+#include "planner/search/belief_graph.h"
+#include "planner/search/mha_search.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+// Progress.
+[[nodiscard]] std::string guides_found(std::size_t guides, std::uint64_t moves);
+[[nodiscard]] std::string path_found(const SearchResult& search);
+
+/// What refuted a path, and what was learnt from it.
+/// @param refused_step whose move the search does without; empty where the start became a particle
+[[nodiscard]] std::string lesson(const Refutation& refutation,
+                                 std::optional<std::size_t> refused_step);
+
+// Reasons: why there is no plan.
+[[nodiscard]] std::string already_at_goal(const Start& start);
+/// @param status kTimeLimit, kExpansionLimit, kNoAttractor or kExhausted
+/// @param report of all searches so far  @param graph how near the last one came
+[[nodiscard]] std::string no_path(PlanStatus status, const PlanReport& report,
+                                  const BeliefGraph& graph, const Task& task,
+                                  std::size_t expansions_max);
+[[nodiscard]] std::string every_path_refuted(const PlanReport& report, std::size_t paths);
+
+}  // namespace tenon::planner

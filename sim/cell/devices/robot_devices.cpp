@@ -1,0 +1,52 @@
+#include "sim/cell/devices/robot_devices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "sim/cell/canopen/eds.h"
+#include "sim/cell/devices/drive_402.h"
+#include "sim/cell/devices/force_torque_node.h"
+
+namespace tenon::sim {
+namespace {
+
+EdsFile eds_file(const SlaveNode& node, const std::string& name) {
+  EdsFile file;
+  file.name = std::to_string(node.node()) + "-" + name + ".eds";
+  file.text = eds_text(
+      node.dictionary(),
+      {.file_name = file.name, .product_name = "tenon virtual " + name, .node = node.node()});
+  return file;
+}
+
+}  // namespace
+
+DriveParameters drive_parameters_of(const Joint& joint) {
+  constexpr double kPermille = 1000.0;
+  constexpr double kMilli = 1000.0;
+  DriveParameters parameters;
+  parameters.node = joint.node;
+  parameters.name = "tenon virtual drive " + joint.name;
+  parameters.mode = static_cast<std::int8_t>(joint.mode);
+  parameters.counts_per_unit = joint.counts_per_unit;
+  parameters.quick_stop_counts_ps2 =
+      static_cast<std::uint32_t>(std::abs(joint.counts_per_unit) * joint.acceleration_max);
+  parameters.rated_effort_mNm = static_cast<std::uint32_t>(kMilli * joint.rated_effort);
+  parameters.effort_max_permille = static_cast<std::uint16_t>(
+      std::clamp(kPermille * joint.effort_max / joint.rated_effort, 1.0, 65535.0));
+  return parameters;
+}
+
+std::vector<EdsFile> eds_files(const Robot& robot) {
+  std::vector<EdsFile> files;
+  for (const Joint& joint : robot.joints) {
+    files.push_back(eds_file(Drive402(drive_parameters_of(joint)).node(), "drive-" + joint.name));
+  }
+  if (robot.sensor.node != 0) {
+    files.push_back(eds_file(ForceTorqueNode(robot.sensor, 0).node(), "sensor"));
+  }
+  return files;
+}
+
+}  // namespace tenon::sim

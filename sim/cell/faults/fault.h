@@ -1,0 +1,78 @@
+#pragma once
+// A fault to inject into a simulated bus or device: what, where, when, how likely. Plain data; the
+// party that carries it out knows nothing of the executor. `--fault help` lists the kinds.
+
+#include <cstdint>
+
+namespace tenon::sim {
+
+enum class FaultKind : std::uint8_t {
+  // On the bus. `node` is the one whose frames are meant; 0: every frame.
+  kDrop = 0,           ///< a frame is lost for all receivers
+  kDelay = 1,          ///< a frame arrives `value` seconds late
+  kDuplicate = 2,      ///< a frame arrives twice
+  kCorruptLength = 3,  ///< a frame arrives with one data byte fewer
+  kBusOff = 4,         ///< the node's controller leaves the bus
+  kQueueFull = 5,      ///< the node's transmit queue takes no frame (ENOBUFS)
+  kInterfaceDown = 6,  ///< the interface is down for all
+  // In a device.
+  kNodeReset = 7,        ///< the node restarts, as after a dip of its supply
+  kSilentNode = 8,       ///< the node neither sends nor receives
+  kEmergency = 9,        ///< the node sends the emergency of code `value`, a drive faults with it
+  kEncoderJump = 10,     ///< the joint's position reads `value` m or rad further from then on
+  kBrakeFailure = 11,    ///< the joint's brake does not hold
+  kStaleForce = 12,      ///< the sensor repeats its last sample, counter included
+  kTornForce = 13,       ///< the two halves of a wrench come from different samples
+  kSaturatedForce = 14,  ///< the sensor reads its range
+  kTorqueLoss = 15,      ///< the joint's drive gives `value` times its effort, 0 <= value < 1
+};
+
+/// Who carries it out.
+enum class FaultTarget : std::uint8_t {
+  kBus = 0,
+  kNode = 1,    ///< a device of either sort
+  kDrive = 2,   ///< drives alone
+  kSensor = 3,  ///< the force/torque sensor alone
+};
+
+[[nodiscard]] constexpr FaultTarget target_of(FaultKind kind) {
+  switch (kind) {
+    case FaultKind::kDrop:
+    case FaultKind::kDelay:
+    case FaultKind::kDuplicate:
+    case FaultKind::kCorruptLength:
+    case FaultKind::kBusOff:
+    case FaultKind::kQueueFull:
+    case FaultKind::kInterfaceDown:
+      return FaultTarget::kBus;
+    case FaultKind::kNodeReset:
+    case FaultKind::kSilentNode:
+    case FaultKind::kEmergency:
+      return FaultTarget::kNode;
+    case FaultKind::kEncoderJump:
+    case FaultKind::kBrakeFailure:
+    case FaultKind::kTorqueLoss:
+      return FaultTarget::kDrive;
+    case FaultKind::kStaleForce:
+    case FaultKind::kTornForce:
+    case FaultKind::kSaturatedForce:
+      return FaultTarget::kSensor;
+  }
+  return FaultTarget::kBus;
+}
+
+[[nodiscard]] constexpr bool is_bus_fault(FaultKind kind) {
+  return target_of(kind) == FaultTarget::kBus;
+}
+
+struct Fault {
+  FaultKind kind = FaultKind::kDrop;
+  std::uint8_t node = 0;
+  double time_s = 0.0;       ///< begin, in simulated time since switching on
+  double duration_s = 0.0;   ///< 0: once; for states (silent, down, stale...) until the end
+  double probability = 1.0;  ///< of every frame or sample while it lasts
+  double value = 0.0;        ///< see the kind
+  std::uint64_t seed = 1;    ///< of the draws
+};
+
+}  // namespace tenon::sim

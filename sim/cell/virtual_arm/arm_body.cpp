@@ -1,0 +1,181 @@
+#include "sim/cell/virtual_arm/arm_body.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "shared/base/error.h"
+#include "sim/cell/virtual_arm/composite_inertia.h"
+
+namespace tenon::sim {
+namespace {
+
+constexpr double kGravity_mps2 = 9.80665;
+// A mass without an inertia is a ball of this size.
+constexpr double kLinkRadius_m = 0.15;
+constexpr double kPayloadRadius_m = 0.05;
+constexpr double kPayloadMassMin_kg = 0.01;
+
+Vector3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+Eigen::Matrix3d rotation_of_body(dBodyID body) {
+  const dReal* r = dBodyGetRotation(body);  // rows of four
+  Eigen::Matrix3d rotation;
+  rotation << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
+  return rotation;
+}
+
+Eigen::Matrix3d ball_kgm2(double mass_kg, double radius_m) {
+  return 0.4 * mass_kg * radius_m * radius_m * Eigen::Matrix3d::Identity();
+}
+
+Pose at(const Vector3& position_m) { return {position_m, {1.0, 0.0, 0.0, 0.0}}; }
+
+LinkInertia checked(const Robot& robot, const Joint& joint) {
+  LinkInertia link = joint.link;
+  const auto refuse = [&](const std::string& what) {
+    throw InputError("robot " + robot.name + ": the link behind joint " + joint.name + " has " +
+                     what);
+  };
+  if (!(joint.stiffness > 0.0)) refuse("a servo without stiffness; give the joint one");
+  if (!(link.mass_kg > 0.0)) refuse("mass " + std::to_string(link.mass_kg) + " kg, must be > 0");
+  if (link.inertia_kgm2.isZero(0.0)) link.inertia_kgm2 = ball_kgm2(link.mass_kg, kLinkRadius_m);
+  const Eigen::LLT<Eigen::Matrix3d> factor(link.inertia_kgm2);
+  if (factor.info() != Eigen::Success) refuse("an inertia that is not positive definite");
+  return link;
+}
+
+}  // namespace
+
+ArmBody::ArmBody(const Cell& cell, const Task& task, const Parameters& parameters)
+    : scene_(task.held, task.environment, parameters.X_BE),
+      contact_law_(parameters.contact_law),
+      gravity_mps2_(-kGravity_mps2 * cell.up_B) {
+  dWorldSetGravity(world_.id(), gravity_mps2_.x(), gravity_mps2_.y(), gravity_mps2_.z());
+  build(cell, parameters);
+  scene_.attach(last_link(), X_OP_);
+}
+
+void ArmBody::build(const Cell& cell, const Parameters& parameters) {
+  Pose X_BL;
+  dBodyID parent = nullptr;
+  for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
+    const Joint& joint = cell.robot.joints[i];
+    const bool revolute = joint.kind == Joint::Kind::kRevolute;
+    X_BL = compose(X_BL, joint.origin);
+    const Vector3 axis = X_BL.orientation * joint.axis;
+    const Vector3 motion = parameters.start[i] * joint.axis;
+    X_BL = compose(X_BL, revolute ? Pose{Vector3::Zero(), rotation_of(motion)} : at(motion));
+
+    LinkInertia link = checked(cell.robot, joint);
+    if (i + 1 == cell.robot.joints.size()) link = with_payload(cell, link);
+    const dBodyID body = make_link(X_BL, link);
+    joints_.emplace_back(
+        world_, joint,
+        ServoJoint::Parameters{parameters.servo_lag_s, parameters.integral_time_s,
+                               revolute ? parameters.backlash_rad : parameters.backlash_m},
+        body, parent, X_BL.position_m, axis, parameters.start[i]);
+    parent = body;
+  }
+}
+
+dBodyID ArmBody::make_link(const Pose& X_BL, const LinkInertia& link) {
+  const dBodyID body = dBodyCreate(world_.id());
+  const Eigen::Matrix3d& I = link.inertia_kgm2;
+  dMass mass;
+  dMassSetParameters(&mass, link.mass_kg, 0.0, 0.0, 0.0, I(0, 0), I(1, 1), I(2, 2), I(0, 1),
+                     I(0, 2), I(1, 2));
+  dBodySetMass(body, &mass);
+  set_pose(body, compose(X_BL, at(link.com_m)));
+  links_.push_back(link);
+  return body;
+}
+
+// The last link and all that hangs on it as one body; its origin is the common centre of mass.
+LinkInertia ArmBody::with_payload(const Cell& cell, const LinkInertia& link) {
+  const Pose X_LS = compose(cell.robot.flange, cell.X_FS);
+  load_.mass_kg = std::max(cell.payload_mass_kg, kPayloadMassMin_kg);
+  load_.inertia_kgm2 = ball_kgm2(load_.mass_kg, kPayloadRadius_m);
+  load_.com_m = compose(X_LS, at(cell.payload_com_m)).position_m;
+
+  CompositeInertia composite;
+  composite.add(link.mass_kg, link.com_m, link.inertia_kgm2);
+  composite.add(load_.mass_kg, load_.com_m, load_.inertia_kgm2);
+  LinkInertia both = composite.sum();
+  const Pose X_OL = at(-both.com_m);
+  load_.com_m -= both.com_m;
+  X_OS_ = compose(X_OL, X_LS);
+  X_OP_ = compose(X_OL, compose(cell.robot.flange, cell.X_FP));
+  return both;
+}
+
+void ArmBody::step(std::span<const ServoJoint::Demand> demands, double step_s) {
+  drive(demands, step_s);
+  scene_.collide(world_, step_s, contact_law_);
+  const std::uint64_t messages_before = ode_messages();
+  world_.step(step_s);
+  solver_messages_ += ode_messages() - messages_before;
+  for (ServoJoint& joint : joints_) joint.read();
+  read_wrench(step_s);
+}
+
+// From the tool to the base, each joint with what it moves as the arm now stands.
+void ArmBody::drive(std::span<const ServoJoint::Demand> demands, double step_s) {
+  CompositeInertia moved;
+  for (std::size_t i = joints_.size(); i-- > 0;) {
+    ServoJoint& joint = joints_[i];
+    const Eigen::Matrix3d rotation = rotation_of_body(joint.link());
+    moved.add(links_[i].mass_kg, vector_of(dBodyGetPosition(joint.link())),
+              rotation * links_[i].inertia_kgm2 * rotation.transpose());
+    const double inertia =
+        joint.revolute() ? moved.about(joint.anchor_m(), joint.axis()) : moved.mass_kg();
+    joint.drive(demands[i], inertia, step_s);
+  }
+}
+
+Vector6 ArmBody::load_momentum() const {
+  const Eigen::Matrix3d rotation = rotation_of_body(last_link());
+  const Vector3 omega_radps = vector_of(dBodyGetAngularVel(last_link()));
+  const Vector3 velocity_mps =
+      vector_of(dBodyGetLinearVel(last_link())) + omega_radps.cross(rotation * load_.com_m);
+  Vector6 momentum;
+  momentum << load_.mass_kg * velocity_mps,
+      rotation * load_.inertia_kgm2 * rotation.transpose() * omega_radps;
+  return momentum;
+}
+
+// What the environment and gravity do to the load, less what changes its momentum, has to come
+// through the sensor.
+void ArmBody::read_wrench(double step_s) {
+  const Vector6 before = momentum_;
+  momentum_ = load_momentum();
+  const Vector6 rate = (momentum_ - before) / step_s;
+  const Eigen::Quaterniond orientation = pose_of(last_link()).orientation;
+  const Vector3 sensor_m = orientation * X_OS_.position_m;
+  const Vector3 weight_N = load_.mass_kg * gravity_mps2_;
+  const Vector6 contact = scene_.wrench();
+
+  const Vector3 force_N = weight_N - rate.head<3>();
+  const Vector3 torque_Nm = contact.tail<3>() - sensor_m.cross(contact.head<3>()) +
+                            (orientation * load_.com_m - sensor_m).cross(force_N) - rate.tail<3>();
+  const Eigen::Quaterniond to_sensor = (orientation * X_OS_.orientation).conjugate();
+  wrench_ << to_sensor * (contact.head<3>() + force_N), to_sensor * torque_Nm;
+}
+
+Pose ArmBody::tool() const { return compose(pose_of(last_link()), X_OP_); }
+
+double ArmBody::energy_J() const {
+  double energy_J = 0.0;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const dBodyID body = joints_[i].link();
+    const Vector3 omega_radps =
+        rotation_of_body(body).transpose() * vector_of(dBodyGetAngularVel(body));
+    const Vector3 velocity_mps = vector_of(dBodyGetLinearVel(body));
+    energy_J += 0.5 * links_[i].mass_kg * velocity_mps.squaredNorm() +
+                0.5 * omega_radps.dot(links_[i].inertia_kgm2 * omega_radps) -
+                links_[i].mass_kg * gravity_mps2_.dot(vector_of(dBodyGetPosition(body)));
+  }
+  return energy_J;
+}
+
+}  // namespace tenon::sim

@@ -1,0 +1,81 @@
+#pragma once
+// The articulated arm in ODE: a body for each link, joined by sliders and hinges with a servo and a
+// brake each, the payload behind the force/torque sensor, and the environment that it touches.
+// Private to sim. The payload is rigid with the last link; the sensor's wrench follows from the
+// momentum of what is beyond it. One thread; units are the joints' (m, N; rad, Nm).
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shared/cell/cell.h"
+#include "shared/ports/arm.h"
+#include "shared/task/task.h"
+#include "sim/cell/virtual_arm/servo_joint.h"
+#include "sim/physics/contacts/contact_law.h"
+#include "sim/physics/scene.h"
+#include "sim/physics/solver/ode_world.h"
+
+namespace tenon::sim {
+
+class ArmBody {
+ public:
+  struct Parameters {
+    JointVector start{};
+    Pose X_BE;  ///< where the task frame of the environment really stands, in the base
+    ContactLaw contact_law;
+    double servo_lag_s = 0.0;
+    double integral_time_s = 0.02;  ///< of the servos; 0: none
+    double backlash_m = 0.0;        ///< of every prismatic joint
+    double backlash_rad = 0.0;      ///< of every revolute joint
+  };
+
+  /// @throws InputError for a link whose mass or inertia no body can have
+  ArmBody(const Cell& cell, const Task& task, const Parameters& parameters);
+
+  /// @param demands one a joint
+  void step(std::span<const ServoJoint::Demand> demands, double step_s);
+
+  [[nodiscard]] std::size_t joint_count() const { return joints_.size(); }
+  [[nodiscard]] const ServoJoint::State& joint(std::size_t i) const { return joints_[i].state(); }
+
+  /// What acts on the load beyond the sensor (contacts, weight, minus inertia), in the sensor's
+  /// axes about its origin, over the last step.
+  [[nodiscard]] const Vector6& wrench() const { return wrench_; }
+  [[nodiscard]] Pose tool() const;  ///< in the base
+  /// Kinetic and potential, of links and payload; its zero is arbitrary.
+  [[nodiscard]] double energy_J() const;
+  /// Sum of the environment's forces on the part in the last step.
+  [[nodiscard]] double contact_force_N() const { return scene_.wrench().head<3>().norm(); }
+  /// Part and environment, and what touched in the last step.
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  /// Messages of the solver so far: steps that it did not solve.
+  [[nodiscard]] std::uint64_t solver_messages() const { return solver_messages_; }
+
+ private:
+  void build(const Cell& cell, const Parameters& parameters);
+  [[nodiscard]] dBodyID make_link(const Pose& X_BL, const LinkInertia& link);
+  [[nodiscard]] LinkInertia with_payload(const Cell& cell, const LinkInertia& link);
+  void drive(std::span<const ServoJoint::Demand> demands, double step_s);
+  void read_wrench(double step_s);
+  [[nodiscard]] Vector6 load_momentum() const;
+  [[nodiscard]] dBodyID last_link() const { return joints_.back().link(); }
+
+  OdeWorld world_;
+  Scene scene_;
+  ContactLaw contact_law_;
+  Vector3 gravity_mps2_;
+  std::vector<LinkInertia> links_;  ///< the bodies'; their origins are the centres of mass
+  std::deque<ServoJoint> joints_;
+  LinkInertia load_;                    ///< beyond the sensor, in the last body's frame
+  Pose X_OP_;                           ///< tool in the last body's frame
+  Pose X_OS_;                           ///< sensor in the last body's frame
+  Vector6 momentum_ = Vector6::Zero();  ///< of the load: linear, angular about its centre of mass
+  Vector6 wrench_ = Vector6::Zero();
+  std::uint64_t solver_messages_ = 0;
+};
+
+}  // namespace tenon::sim

@@ -1,0 +1,50 @@
+#pragma once
+// Notices what matters in the virtual cell as it happens: states of drives, brakes, first contacts
+// and the largest force, for the truth. It changes nothing. Private to sim; one thread.
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "shared/cell/robot.h"
+#include "sim/cell/devices/drive_402.h"
+#include "sim/cell/virtual_arm/arm_body.h"
+#include "sim/cell/virtual_arm/event_log.h"
+
+namespace tenon::sim {
+
+class CellWatch {
+ public:
+  /// All must outlive it. @param drives one a joint
+  CellWatch(const Robot& robot, const std::deque<Drive402>& drives, const ArmBody& arm)
+      : robot_(robot), drives_(drives), arm_(arm) {}
+
+  /// The drives have been switched on. Before the others.
+  void power_on();
+  /// At all drives. @param time_ns since the cell was switched on
+  void look_at_drives(std::int64_t time_ns);
+  /// At the contacts of the last step of physics.
+  void look_at_contacts(std::int64_t time_ns);
+
+  [[nodiscard]] EventLog& events() { return events_; }
+  [[nodiscard]] const EventLog& events() const { return events_; }
+  [[nodiscard]] double contact_force_N_max() const { return contact_force_N_max_; }
+  /// Times that a drive entered fault.
+  [[nodiscard]] std::uint32_t faults() const { return faults_; }
+
+ private:
+  const Robot& robot_;
+  const std::deque<Drive402>& drives_;
+  const ArmBody& arm_;
+  EventLog events_;
+  std::vector<Drive402::State> states_seen_;
+  std::vector<bool> brakes_seen_;
+  std::set<std::pair<std::size_t, std::size_t>> contacts_seen_;
+  double contact_force_N_max_ = 0.0;
+  std::uint32_t faults_ = 0;
+};
+
+}  // namespace tenon::sim

@@ -1,0 +1,92 @@
+#pragma once
+// One joint of the virtual arm: an ODE slider or hinge with the servo and the holding brake in its
+// motor row. Private to sim.
+//
+// The servo is an implicit spring and damper from the demand to the motor's side of the gear, with
+// an integral part, never stronger than the drive's torque:
+//   F = K (q_d - q_m) + D (q_d' - q') + I,   I' = (K / T_i) (q_d - q_m)
+// q_d follows the drive's demand with a first-order lag; K is the joint's stiffness; D is critical
+// for what the joint moves in the arm's present pose. q_m - q is the gear's play: nothing while the
+// gear drives, anything up to half the backlash either way while it does not. The brake is dry
+// friction that holds more than the servo can pull. Positions are absolute and do not wrap. Units
+// are the joint's: m and N, or rad and Nm.
+
+#include <ode/ode.h>
+
+#include "shared/cell/robot.h"
+#include "sim/physics/solver/ode_world.h"
+
+namespace tenon::sim {
+
+class ServoJoint {
+ public:
+  struct Parameters {
+    double lag_s = 0.0;             ///< time constant of the lag behind the demand
+    double integral_time_s = 0.02;  ///< T_i; 0: no integral part, the joint sags under load
+    double backlash = 0.0;          ///< from one side of the play to the other
+  };
+
+  /// What brake and servo are to do by the end of the next step. Neither: the joint is free.
+  struct Demand {
+    bool brake = true;     ///< holds the joint, whatever the servo does
+    bool powered = false;  ///< the servo follows position and velocity
+    double position = 0.0;
+    double velocity = 0.0;
+    double effort_max = 0.0;  ///< what torque the servo has, N or Nm
+  };
+
+  struct State {
+    double position = 0.0;  ///< of the link
+    double encoder = 0.0;   ///< on the motor's side of the gear
+    double velocity = 0.0;
+    double effort = 0.0;  ///< of the servo; 0 while it is off or the brake holds
+  };
+
+  /// Joins two bodies as they stand. @param parent null for the base  @param anchor_m, axis (unit):
+  /// in the world  @param position what the joint reads there
+  ServoJoint(const OdeWorld& world, const Joint& joint, const Parameters& parameters, dBodyID link,
+             dBodyID parent, const Vector3& anchor_m, const Vector3& axis, double position);
+  ServoJoint(const ServoJoint&) = delete;
+  ServoJoint& operator=(const ServoJoint&) = delete;
+
+  [[nodiscard]] bool revolute() const { return revolute_; }
+  [[nodiscard]] dBodyID link() const { return link_; }
+  [[nodiscard]] Vector3 axis() const;      ///< in the world
+  [[nodiscard]] Vector3 anchor_m() const;  ///< in the world; of a hinge
+
+  /// Before a step of the world. @param inertia kg or kg m^2, what the joint moves
+  void drive(const Demand& demand, double inertia, double step_s);
+  /// After it.
+  void read();
+  [[nodiscard]] const State& state() const { return state_; }
+
+ private:
+  void follow(const Demand& demand, double inertia, double step_s);
+  [[nodiscard]] double raw_position() const;
+  [[nodiscard]] double play_at(double servo_position) const;
+  void set_stops();
+  void set(int parameter, double value);
+
+  dJointID joint_;
+  dBodyID link_;
+  dJointFeedback feedback_{};
+  bool revolute_;
+  double lower_;
+  double upper_;
+  double effort_max_;
+  double stiffness_;
+  Parameters parameters_;
+
+  double offset_;                        ///< from what ODE reads to the position
+  double raw_ = 0.0;                     ///< what ODE reads
+  bool follows_ = false;                 ///< in the last step
+  double integral_ = 0.0;                ///< I
+  double followed_;                      ///< q_d for the end of the last step
+  double play_ = 0.0;                    ///< q_m - q
+  double effort_limit_ = 0.0;            ///< of the motor row in the last step
+  Vector3 step_axis_ = Vector3::Zero();  ///< of the last step, to read its effort
+  Vector3 step_lever_m_ = Vector3::Zero();
+  State state_;
+};
+
+}  // namespace tenon::sim

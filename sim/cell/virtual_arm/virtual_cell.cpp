@@ -1,0 +1,310 @@
+#include "sim/cell/virtual_arm/virtual_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <vector>
+
+#include "shared/base/error.h"
+#include "shared/task/find_start.h"
+#include "sim/cell/devices/drive_402.h"
+#include "sim/cell/devices/force_torque_node.h"
+#include "sim/cell/devices/robot_devices.h"
+#include "sim/cell/faults/bus_faults.h"
+#include "sim/cell/faults/fault_spec.h"
+#include "sim/cell/virtual_arm/arm_body.h"
+#include "sim/cell/virtual_arm/cell_watch.h"
+#include "sim/cell/virtual_arm/demand_delay.h"
+#include "sim/cell/virtual_arm/start_joints.h"
+
+namespace tenon::sim {
+namespace {
+
+constexpr double kNanosecondsPerSecond = 1e9;
+constexpr double kOverlapMax_m = 1e-5;
+constexpr double kStandstill = 1e-4;  // m/s or rad/s
+constexpr double kPermille = 1000.0;
+
+ForceTorqueNode::Imperfections sensor_imperfections(const WorldDraw& world) {
+  ForceTorqueNode::Imperfections imperfections;
+  imperfections.force_drift_N_sqrts = world.force_drift_N_sqrts;
+  imperfections.torque_drift_Nm_sqrts = world.torque_drift_Nm_sqrts;
+  return imperfections;
+}
+
+bool is_sync(const CanFrame& frame) { return frame.id == canopen::kSync && !frame.extended; }
+
+std::size_t delay_steps(const VirtualCell::Options& options) {
+  const double step_s = static_cast<double>(options.physics_step_ns) / kNanosecondsPerSecond;
+  return static_cast<std::size_t>(std::lround(options.world.extra_delay_s / step_s));
+}
+
+/// Those of devices, the earliest last.
+std::vector<Fault> pending_faults(const Robot& robot, const std::vector<Fault>& all) {
+  std::vector<Fault> faults = faults_of_devices(all, robot.master_node);
+  for (Fault& fault : faults) {
+    if (fault.node == 0 && target_of(fault.kind) == FaultTarget::kSensor) {
+      fault.node = robot.sensor.node;
+    }
+    const bool of_joint = std::any_of(robot.joints.begin(), robot.joints.end(),
+                                      [&](const Joint& joint) { return joint.node == fault.node; });
+    if (of_joint || fault.node == robot.sensor.node) continue;
+    throw InputError(std::string("fault ") + to_string(fault.kind) + ": node " +
+                     std::to_string(fault.node) + " is neither a joint nor the sensor of robot " +
+                     robot.name);
+  }
+  std::stable_sort(faults.begin(), faults.end(),
+                   [](const Fault& a, const Fault& b) { return a.time_s > b.time_s; });
+  return faults;
+}
+
+ArmBody::Parameters arm_parameters(const Cell& cell, const Cell& real, const Task& task,
+                                   const VirtualCell::Options& options) {
+  ArmBody::Parameters parameters;
+  // The master knows the cell as its file has it, and drives the arm to the start by that.
+  parameters.start = options.joints ? *options.joints
+                                    : start_joints(cell, start_or_first(task, options.start).pose);
+  parameters.X_BE = compose(real.X_BT, displaced(Pose{}, options.offset));
+  // The protocol's part is in the drives already.
+  const double protocol_s = protocol_lag_s(1e-6 * cell.robot.cycle_us);
+  parameters.servo_lag_s = std::max(0.0, cell.robot.response_lag_s - protocol_s);
+  parameters.backlash_m = options.world.backlash_m;
+  parameters.backlash_rad = options.world.backlash_rad;
+  parameters.contact_law.friction = options.world.friction.value_or(task.friction.nominal);
+  parameters.contact_law.stiffness_Npm = real.contact_stiffness_Npm;
+  return parameters;
+}
+
+}  // namespace
+
+class VirtualCell::Impl {
+ public:
+  Impl(const Cell& cell, const Task& task, const Options& options)
+      : cell_(real_cell(cell, options.world)),
+        task_(task),
+        options_(options),
+        start_name_(start_or_first(task, options.start).name),
+        faults_to_come_(pending_faults(cell.robot, options.faults)),
+        arm_(cell_, real_task(task, options.world), arm_parameters(cell, cell_, task, options)),
+        sensor_(cell_.robot.sensor, options.seed, sensor_imperfections(options.world)),
+        delay_(cell.robot.joints.size(), delay_steps(options)),
+        cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us) {
+    for (const Joint& joint : cell.robot.joints) drives_.emplace_back(drive_parameters_of(joint));
+    if (arm_.scene().overlap_m() > kOverlapMax_m) {
+      throw InputError(
+          "task " + task.name + ": at start \"" + start_name_ + "\" the part stands " +
+          std::to_string(arm_.scene().overlap_m()) +
+          " m deep in the displaced environment; choose another start, seed or offset");
+    }
+    for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].measured(measure(i), 0);
+  }
+
+  void step(std::int64_t now_ns, CanBus& bus);
+  [[nodiscard]] Truth truth() const;
+  [[nodiscard]] std::int64_t physics_cost_ns() const { return physics_cost_ns_; }
+  [[nodiscard]] bool at_standstill() const;
+
+ private:
+  void power_on(std::int64_t now_ns);
+  void advance_physics(std::int64_t now_ns);
+  void physics_step();
+  void inject_faults();
+  void deliver(const CanFrame& frame, std::int64_t now_ns);
+  void sample_sensor();
+  void send(CanBus& bus, bool arbitrate);
+  [[nodiscard]] Drive402::Measurement measure(std::size_t i) const;
+  /// Of physics, since the cell was switched on.
+  [[nodiscard]] std::int64_t time_ns() const { return physics_ns_ - on_ns_; }
+  [[nodiscard]] std::int64_t stopwatch_ns() const {
+    return options_.stopwatch_ns != nullptr ? options_.stopwatch_ns() : 0;
+  }
+
+  Cell cell_;  ///< the real one
+  Task task_;  ///< the nominal one
+  Options options_;
+  std::string start_name_;
+  std::vector<Fault> faults_to_come_;  ///< the earliest last
+  ArmBody arm_;
+  std::deque<Drive402> drives_;
+  ForceTorqueNode sensor_;
+  DemandDelay delay_;
+
+  bool on_ = false;
+  std::int64_t on_ns_ = 0;
+  std::int64_t physics_ns_ = 0;
+  std::int64_t physics_cost_ns_ = 0;
+  // The sensor reports the mean since its last sample, as sensors that sample faster do.
+  Vector6 wrench_sum_ = Vector6::Zero();
+  int wrench_count_ = 0;
+  std::int64_t cycle_ns_;
+  std::vector<CanFrame> incoming_;
+  std::vector<CanFrame> outgoing_;
+  std::uint64_t frames_not_sent_ = 0;
+
+  CellWatch watch_{cell_.robot, drives_, arm_};
+};
+
+void VirtualCell::Impl::power_on(std::int64_t now_ns) {
+  on_ = true;
+  on_ns_ = physics_ns_ = now_ns;
+  for (Drive402& drive : drives_) drive.node().power_on(now_ns);
+  watch_.power_on();
+  sensor_.node().power_on(now_ns);
+}
+
+void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
+  if (!on_) power_on(now_ns);
+  send(bus, false);
+  incoming_.clear();
+  ReceivedFrame received;
+  while (bus.receive(received)) incoming_.push_back(received.frame);
+  std::int64_t syncs_left = std::count_if(incoming_.begin(), incoming_.end(), is_sync);
+  for (const CanFrame& frame : incoming_) {
+    if (is_sync(frame)) {
+      // Several at once: the caller is late. They came a cycle apart, and act so.
+      --syncs_left;
+      advance_physics(now_ns - syncs_left * cycle_ns_);
+      sample_sensor();
+    }
+    deliver(frame, now_ns);
+    send(bus, is_sync(frame));
+  }
+  advance_physics(now_ns);
+  for (Drive402& drive : drives_) drive.advance(now_ns);
+  sensor_.advance(now_ns);
+  send(bus, false);
+  watch_.look_at_drives(time_ns());
+}
+
+void VirtualCell::Impl::deliver(const CanFrame& frame, std::int64_t now_ns) {
+  for (Drive402& drive : drives_) drive.node().receive(frame, now_ns);
+  sensor_.node().receive(frame, now_ns);
+}
+
+void VirtualCell::Impl::advance_physics(std::int64_t now_ns) {
+  while (physics_ns_ + options_.physics_step_ns <= now_ns) {
+    inject_faults();
+    physics_step();
+  }
+}
+
+void VirtualCell::Impl::physics_step() {
+  const std::int64_t step_ns = options_.physics_step_ns;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const Joint& joint = cell_.robot.joints[i];
+    const Drive402::Demand demand = drives_[i].demand(step_ns);
+    delay_.now()[i] = {demand.brake, demand.powered,
+                       (demand.position_counts - joint.zero_counts) / joint.counts_per_unit,
+                       demand.velocity_countsps / joint.counts_per_unit,
+                       demand.torque_max_permille / kPermille * joint.rated_effort};
+  }
+  const std::int64_t before_ns = stopwatch_ns();
+  arm_.step(delay_.delayed(), static_cast<double>(step_ns) / kNanosecondsPerSecond);
+  physics_cost_ns_ += stopwatch_ns() - before_ns;
+  physics_ns_ += step_ns;
+  for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].measured(measure(i), step_ns);
+  wrench_sum_ += arm_.wrench();
+  ++wrench_count_;
+  watch_.look_at_drives(time_ns());
+  watch_.look_at_contacts(time_ns());
+}
+
+void VirtualCell::Impl::inject_faults() {
+  const double time_s = static_cast<double>(time_ns()) / kNanosecondsPerSecond;
+  while (!faults_to_come_.empty() && faults_to_come_.back().time_s <= time_s) {
+    const Fault fault = faults_to_come_.back();
+    faults_to_come_.pop_back();
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      if (cell_.robot.joints[i].node == fault.node) drives_[i].inject(fault);
+    }
+    if (cell_.robot.sensor.node == fault.node) sensor_.inject(fault);
+    watch_.events().add(time_ns(), "fault " + std::string(to_string(fault.kind)) + ", node " +
+                                       std::to_string(fault.node));
+  }
+}
+
+Drive402::Measurement VirtualCell::Impl::measure(std::size_t i) const {
+  const Joint& joint = cell_.robot.joints[i];
+  const ServoJoint::State& state = arm_.joint(i);
+  return {state.encoder * joint.counts_per_unit + joint.zero_counts,
+          state.velocity * joint.counts_per_unit, kPermille * state.effort / joint.rated_effort};
+}
+
+void VirtualCell::Impl::sample_sensor() {
+  if (wrench_count_ == 0) return;
+  sensor_.measured(wrench_sum_ / wrench_count_, wrench_count_ * options_.physics_step_ns);
+  wrench_sum_ = Vector6::Zero();
+  wrench_count_ = 0;
+}
+
+void VirtualCell::Impl::send(CanBus& bus, bool arbitrate) {
+  outgoing_.clear();
+  for (Drive402& drive : drives_) drive.node().take(outgoing_);
+  sensor_.node().take(outgoing_);
+  // Frames that become ready together leave by priority.
+  if (arbitrate) {
+    std::stable_sort(outgoing_.begin(), outgoing_.end(),
+                     [](const CanFrame& a, const CanFrame& b) { return a.id < b.id; });
+  }
+  for (const CanFrame& frame : outgoing_) {
+    if (bus.send(frame) != SendResult::kSent) ++frames_not_sent_;
+    if (frame.id > canopen::kEmergency && frame.id < canopen::kTpdo1) {
+      watch_.events().emergency(time_ns(), frame);
+    }
+  }
+}
+
+Truth VirtualCell::Impl::truth() const {
+  Truth truth;
+  truth.task = task_.name;
+  truth.start = start_name_;
+  truth.seed = options_.seed;
+  truth.time_s = static_cast<double>(time_ns()) / kNanosecondsPerSecond;
+  truth.offset = options_.offset;
+  truth.world = options_.world;
+  truth.world.friction = options_.world.friction.value_or(task_.friction.nominal);
+  truth.world.contact_stiffness_Npm = cell_.contact_stiffness_Npm;
+  const Pose X_BE = compose(cell_.X_BT, displaced(Pose{}, options_.offset));
+  truth.tool = compose(inverse(X_BE), arm_.tool());
+  truth.error = displacement_between(task_.goal, truth.tool);
+  truth.error_norm_m = truth.error.head<3>().norm();
+  truth.error_norm_rad = truth.error.tail<3>().norm();
+  truth.goal_tolerance_m = task_.goal_tolerance_m;
+  truth.within_tolerance = truth.error_norm_m <= task_.goal_tolerance_m;
+  truth.contact_force_N_max = watch_.contact_force_N_max();
+  truth.touching = arm_.scene().touching();
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const Drive402& drive = drives_[i];
+    truth.drives.push_back({cell_.robot.joints[i].name, cell_.robot.joints[i].node,
+                            to_string(drive.state()), drive.brake_engaged(),
+                            drive.node().state() == NmtState::kOperational, drive.error_code(),
+                            arm_.joint(i).position});
+  }
+  truth.faults = watch_.faults();
+  truth.solver_messages = arm_.solver_messages();
+  truth.frames_not_sent = frames_not_sent_;
+  truth.events = watch_.events().events();
+  return truth;
+}
+
+bool VirtualCell::Impl::at_standstill() const {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (std::abs(arm_.joint(i).velocity) > kStandstill) return false;
+  }
+  return true;
+}
+
+VirtualCell::VirtualCell(const Cell& cell, const Task& task, const Options& options)
+    : impl_(std::make_unique<Impl>(cell, task, options)) {}
+
+VirtualCell::~VirtualCell() = default;
+
+void VirtualCell::step(std::int64_t now_ns, CanBus& bus) { impl_->step(now_ns, bus); }
+
+Truth VirtualCell::truth() const { return impl_->truth(); }
+
+std::int64_t VirtualCell::physics_cost_ns() const { return impl_->physics_cost_ns(); }
+
+bool VirtualCell::at_standstill() const { return impl_->at_standstill(); }
+
+}  // namespace tenon::sim

@@ -1,0 +1,89 @@
+#include "sim/evaluation_chain/trial_chain.h"
+
+#include <cstdio>
+
+#include "hw/arm/describe_fault.h"
+#include "shared/base/text.h"
+#include "shared/task/inserted.h"
+
+namespace tenon::sim {
+namespace {
+
+VirtualCell::Options world_of(const Candidate& candidate, const JointVector& joints,
+                              const Trial& trial) {
+  VirtualCell::Options options;
+  options.start = candidate.start.name;
+  options.seed = trial.seed;
+  options.offset = trial.offset;
+  options.world = trial.world;
+  options.joints = joints;
+  return options;
+}
+
+}  // namespace
+
+TrialChain::TrialChain(const PreparedPlan& prepared, const Trial& trial,
+                       const executor::CycleRunner::Parameters& loop)
+    : cell_(prepared.cell),
+      task_(prepared.task),
+      link_({.bitrate_bps = cell_.robot.bitrate_bps, .seed = trial.seed}, cell_.robot.master_node),
+      arm_(cell_.robot, link_.master()),
+      controller_(cell_, prepared.dry_run, {}),
+      runner_(arm_, controller_, nullptr, loop),
+      virtual_cell_(cell_, task_, world_of(prepared.candidate, prepared.joints, trial)),
+      time_(arm_, virtual_cell_, link_,
+            {.cycle_ns = std::int64_t{1000} * cell_.robot.cycle_us,
+             .feedback_deadline = loop.feedback_deadline}) {}
+
+void TrialChain::run() {
+  constexpr std::int64_t kCyclesMax = 1'000'000;
+  if (!time_.prepare()) return;
+  while (time_.statistics().cycles < kCyclesMax && time_.cycle(runner_)) {
+    plan_ran_ = plan_ran_ || controller_.state() == executor::State::kRunning;
+  }
+}
+
+TrialResult TrialChain::result() const {
+  const executor::RunResult run = told();
+  const Truth truth = virtual_cell_.truth();
+  TrialResult result;
+  result.done = run.exit_code == 0;
+  result.at_goal = truth.within_tolerance && inserted(task_, truth.tool);
+  result.ending = to_string(run.reason);
+  result.reason = run.message;
+  result.steps = run.steps.size();
+  result.duration_s = run.duration_s;
+  if (plan_ran_) result.step = static_cast<int>(controller_.runner().step());
+  if (!run.steps.empty() && run.steps.back().step == controller_.runner().step()) {
+    result.outcome = to_string(run.steps.back().result.outcome);
+  }
+  result.error = truth.error;
+  result.contact_force_N_max = truth.contact_force_N_max;
+  if (result.done && !result.at_goal) {
+    result.reason += format("; the part is %.2f mm from its goal (%.2f allowed) and %sinserted",
+                            1e3 * truth.error_norm_m, 1e3 * truth.goal_tolerance_m,
+                            inserted(task_, truth.tool) ? "" : "not ");
+  }
+  if (truth.solver_messages > 0) {
+    result.done = false;
+    result.ending = kNoPhysics;
+    result.reason = format("the physics solver gave up %zu times; the executor says: ",
+                           static_cast<std::size_t>(truth.solver_messages)) +
+                    run.message;
+  }
+  return result;
+}
+
+void TrialChain::print() const {
+  const executor::RunResult run = told();
+  for (const executor::StepReport& step : run.steps) {
+    std::printf("%s\n", executor::step_line(step).c_str());
+  }
+  std::printf("%s\n%s", run.message.c_str(), describe(virtual_cell_.truth()).c_str());
+}
+
+executor::RunResult TrialChain::told() const {
+  return executor::gather_result(controller_, runner_, 0, hw::describe(arm_.fault(), cell_.robot));
+}
+
+}  // namespace tenon::sim

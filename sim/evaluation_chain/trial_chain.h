@@ -1,0 +1,61 @@
+#pragma once
+// One trial of a plan: executor, CANopen master, bus and virtual cell in one process and in virtual
+// time. Made, used and gone on one thread; reads no clock.
+
+#include <cstdint>
+
+#include "executor/dry_run/dry_run.h"
+#include "executor/loop/controller.h"
+#include "executor/loop/cycle_runner.h"
+#include "executor/telemetry/run_result.h"
+#include "hw/arm/canopen_arm.h"
+#include "shared/cell/cell.h"
+#include "shared/ports/arm.h"
+#include "shared/task/task.h"
+#include "sim/cell/lockstep/lockstep.h"
+#include "sim/cell/lockstep/virtual_link.h"
+#include "sim/cell/virtual_arm/virtual_cell.h"
+#include "sim/evaluation/evaluation.h"
+#include "sim/evaluation/trial.h"
+
+namespace tenon::sim {
+
+/// What all trials of a plan share.
+struct PreparedPlan {
+  const Cell& cell;
+  const Task& task;
+  const Candidate& candidate;
+  executor::DryRun dry_run;
+  JointVector joints{};  ///< where the arm stands at first
+};
+
+class TrialChain {
+ public:
+  /// @param prepared must outlive it
+  /// @throws InputError where the drawn world cannot be
+  TrialChain(const PreparedPlan& prepared, const Trial& trial,
+             const executor::CycleRunner::Parameters& loop);
+
+  /// From bringing the arm up to the run's end. Once.
+  void run();
+  /// What came of it, by the executor's word and by the truth.
+  [[nodiscard]] TrialResult result() const;
+  /// Prints the steps, the ending and the truth.
+  void print() const;
+  [[nodiscard]] const executor::BlackBox& black_box() const { return runner_.black_box(); }
+
+ private:
+  [[nodiscard]] executor::RunResult told() const;
+
+  const Cell& cell_;
+  const Task& task_;
+  VirtualLink link_;
+  hw::CanopenArm arm_;
+  executor::Controller controller_;
+  executor::CycleRunner runner_;
+  VirtualCell virtual_cell_;
+  Lockstep time_;
+  bool plan_ran_ = false;
+};
+
+}  // namespace tenon::sim

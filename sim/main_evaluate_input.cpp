@@ -1,0 +1,116 @@
+#include "sim/main_evaluate_input.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "shared/base/error.h"
+#include "shared/base/fnv.h"
+#include "shared/base/text.h"
+#include "shared/config/command_line.h"
+#include "shared/config/files.h"
+#include "shared/config/load.h"
+#include "shared/task/find_start.h"
+
+namespace tenon {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string hash_of(const std::string& bytes) {
+  return format("%016llx", static_cast<unsigned long long>(fnv1a_64(bytes)));
+}
+
+std::string replay_of(const EvaluateLine& line) {
+  std::string text = "tenon-evaluate --cell " + shell_word(line.cell) + " --task " +
+                     shell_word(line.task) + " --seed " + std::to_string(line.seed);
+  if (!line.experiment.empty()) text += " --experiment " + shell_word(line.experiment);
+  return text;
+}
+
+/// What is written, and every log that is read, must be a file of its own.
+void check_apart(const EvaluateLine& line) {
+  std::vector<std::string> files = line.merge;
+  for (const std::string& file :
+       {log_file_of(line), line.json, line.report, line.summary, line.black_box}) {
+    if (!file.empty()) files.push_back(file);
+  }
+  std::set<fs::path> known;
+  for (const std::string& file : files) {
+    if (known.insert(fs::weakly_canonical(fs::absolute(file))).second) continue;
+    throw InputError(file + ": is given for two files, or is the run log of --json; give each a " +
+                     "name of its own");
+  }
+}
+
+void check_other(const EvaluateLine& line, const sim::Candidate& candidate,
+                 const sim::Candidate& other) {
+  if (!line.figures.empty() && fs::path(candidate.file).stem() == fs::path(other.file).stem()) {
+    throw InputError("--figures " + line.figures + ": the figures of " + candidate.file + " and " +
+                     other.file + " would have the same names; rename one of them");
+  }
+  if (other.hash == candidate.hash) {
+    throw InputError("--plan " + candidate.file + ": is the same plan as " + other.file +
+                     "; give it once");
+  }
+}
+
+}  // namespace
+
+std::string identity_of(const EvaluateLine& line, const Task& task) {
+  std::string cell;
+  for (const auto& file : cell_files(line.cell)) cell += config::read_file(file);
+  std::ifstream stream("/proc/self/exe", std::ios::binary);
+  const std::string program{std::istreambuf_iterator<char>(stream), {}};
+
+  nlohmann::ordered_json identity;
+  identity["tenon-evaluate"] = TENON_VERSION;
+  identity["program"] = hash_of(program);
+  identity["cell"] = hash_of(cell);
+  identity["task"] = format("%016llx", static_cast<unsigned long long>(task.hash));
+  identity["experiment"] =
+      line.experiment.empty() ? "" : hash_of(config::read_file(line.experiment));
+  identity["seed"] = line.seed;
+  return identity.dump();
+}
+
+std::string log_file_of(const EvaluateLine& line) {
+  if (!line.runs.empty() || line.json.empty()) return line.runs;
+  return fs::path(line.json).replace_extension(".jsonl").string();
+}
+
+void check_options(const EvaluateLine& line) {
+  check_apart(line);
+  if (!line.black_box.empty() && line.plans.size() != 1) {
+    throw InputError("--black-box " + line.black_box + ": holds one run; give one --plan");
+  }
+  if (line.only && !(line.json + line.report + line.summary + line.figures).empty()) {
+    throw InputError(
+        "--only: tells one run here; leave out --json, --report, --summary and --figures");
+  }
+}
+
+sim::Evaluation evaluation_of(const EvaluateLine& line, const Cell& cell) {
+  sim::Evaluation evaluation;
+  evaluation.task = load_task(line.task);
+  evaluation.cell = cell.name;
+  if (!line.experiment.empty()) evaluation.ranges = load_experiment(line.experiment);
+  evaluation.seed = line.seed;
+  evaluation.replay = replay_of(line);
+  for (const std::string& by : line.by) evaluation.by.push_back(sim::parse_bins(by));
+  for (const std::string& file : line.plans) {
+    sim::Candidate candidate;
+    candidate.file = file;
+    candidate.hash = hash_of(config::read_file(file));
+    candidate.plan = load_plan(file);
+    candidate.start = start_or_first(evaluation.task, candidate.plan.start_name);
+    for (const sim::Candidate& other : evaluation.candidates) check_other(line, candidate, other);
+    evaluation.candidates.push_back(std::move(candidate));
+  }
+  return evaluation;
+}
+
+}  // namespace tenon

@@ -1,0 +1,32 @@
+#pragma once
+// How far tenon-evaluate is: one line that is written over, on a terminal alone. Reads the clock of
+// the system; one thread at a time.
+
+#include <chrono>
+#include <cstddef>
+
+namespace tenon {
+
+class Progress {
+ public:
+  /// @param before runs of `all` that are there already
+  Progress(std::size_t all, std::size_t before);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  /// Takes the line away.
+  ~Progress();
+
+  void count(bool succeeded);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::size_t all_;
+  std::size_t before_;
+  std::size_t made_ = 0;
+  std::size_t succeeded_ = 0;
+  bool terminal_;
+  bool shown_ = false;
+  Clock::time_point begin_;
+};
+
+}  // namespace tenon

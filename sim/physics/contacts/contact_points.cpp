@@ -1,0 +1,95 @@
+#include "sim/physics/contacts/contact_points.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "shared/math/pose.h"
+
+namespace tenon::sim {
+namespace {
+
+constexpr double kGrazing_m = 1e-7;  // points no deeper share alike
+
+Vector3 normal_of(const dContactGeom& point) {
+  return {point.normal[0], point.normal[1], point.normal[2]};
+}
+
+Vector3 position_of(const dContactGeom& point) {
+  return {point.pos[0], point.pos[1], point.pos[2]};
+}
+
+bool on_one_plane(const dContactGeom& a, const dContactGeom& b) {
+  constexpr double kParallel = 0.9994;  // 2 degrees
+  constexpr double kApart_m = 1e-3;
+  const Vector3 normal = normal_of(a);
+  return normal.dot(normal_of(b)) > kParallel &&
+         std::abs(normal.dot(position_of(a) - position_of(b))) < kApart_m;
+}
+
+/// Indices of the points of a face that stay: its hull as eight directions see it, and the deepest.
+std::vector<std::size_t> outermost(const std::vector<dContactGeom>& points,
+                                   const std::vector<std::size_t>& face) {
+  const Vector3 normal = normal_of(points[face.front()]);
+  const Vector3 u = normal.unitOrthogonal();
+  const Vector3 v = normal.cross(u);
+  const double diagonal = std::sqrt(0.5);
+  const std::array<Vector3, 4> ways = {u, v, diagonal * (u + v), diagonal * (u - v)};
+  std::vector<std::size_t> kept;
+  const auto keep_most = [&](const auto& measure) {
+    kept.push_back(*std::max_element(face.begin(), face.end(), [&](std::size_t a, std::size_t b) {
+      return measure(points[a]) < measure(points[b]);
+    }));
+  };
+  for (const Vector3& way : ways) {
+    for (const double sign : {1.0, -1.0}) {
+      keep_most([&](const dContactGeom& point) { return sign * way.dot(position_of(point)); });
+    }
+  }
+  keep_most([](const dContactGeom& point) { return point.depth; });
+  return kept;
+}
+
+}  // namespace
+
+void thin_out(std::vector<dContactGeom>& points) {
+  if (points.size() <= kPointsAFace) return;
+  std::vector<std::vector<std::size_t>> faces;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto face = std::find_if(faces.begin(), faces.end(), [&](const auto& members) {
+      return on_one_plane(points[members.front()], points[i]);
+    });
+    if (face == faces.end()) {
+      faces.push_back({i});
+    } else {
+      face->push_back(i);
+    }
+  }
+  std::vector<std::size_t> kept;
+  for (const std::vector<std::size_t>& face : faces) {
+    const auto stay = face.size() <= kPointsAFace ? face : outermost(points, face);
+    kept.insert(kept.end(), stay.begin(), stay.end());
+  }
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  for (std::size_t i = 0; i < kept.size(); ++i) points[i] = points[kept[i]];
+  points.resize(kept.size());
+}
+
+std::vector<double> shares(const std::vector<dContactGeom>& points) {
+  const auto depth_m = [](const dContactGeom& point) {
+    return std::max(kGrazing_m, static_cast<double>(point.depth));
+  };
+  std::vector<double> parts;
+  for (const dContactGeom& point : points) {
+    double all_m = 0.0;
+    for (const dContactGeom& other : points) {
+      const double cosine = std::max(0.0, normal_of(point).dot(normal_of(other)));
+      all_m += cosine * cosine * depth_m(other);
+    }
+    parts.push_back(depth_m(point) / all_m);
+  }
+  return parts;
+}
+
+}  // namespace tenon::sim

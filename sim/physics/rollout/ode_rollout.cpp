@@ -1,0 +1,86 @@
+#include "sim/physics/rollout/ode_rollout.h"
+
+#include <algorithm>
+
+#include "sim/physics/contacts/contact_law.h"
+#include "sim/physics/rollout/compliant_tool.h"
+#include "sim/physics/scene.h"
+#include "sim/physics/solver/ode_world.h"
+
+namespace tenon::sim {
+namespace {
+
+// A part this deep inside another has gone through it; the force limit alone presses far less.
+constexpr double kTunnelled_m = 5e-3;
+// Overlaps below this are resting contacts.
+constexpr double kCollision_m = 1e-4;
+constexpr std::int64_t kMicrosecond_ns = 1000;
+constexpr double kMicrosecond_s = 1e-6;
+
+}  // namespace
+
+struct OdeRollout::Physics {
+  explicit Physics(const Task& task)
+      : scene(task.held, task.environment), tool(world, task.compliance) {
+    scene.attach(tool.body());
+  }
+  OdeWorld world;
+  Scene scene;
+  CompliantTool tool;
+};
+
+OdeRollout::OdeRollout(const Task& task) : task_(task), physics_(std::make_unique<Physics>(task)) {}
+
+OdeRollout::~OdeRollout() = default;
+
+RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameters& move,
+                                   std::int64_t step_us, std::vector<TraceSample>* trace) {
+  Physics& p = *physics_;
+  const double step_s = kMicrosecond_s * static_cast<double>(step_us);
+  const ContactLaw law{particle.physics.friction, particle.physics.contact_stiffness_Npm};
+  const std::uint64_t messages_before = ode_messages();
+  p.tool.set_compliance(move.compliance);
+  p.tool.place(particle.pose);
+  p.scene.set_oversize(particle.physics.oversize_m);
+
+  GuardedMove guarded(move, particle.signature);
+  GuardedMove::Input input;
+  input.pose = p.tool.pose();
+  input.wrench_fresh = false;  // nothing has been measured yet
+  RolloutResult result;
+  for (;;) {
+    const GuardedMove::Output output = guarded.update(input);
+    if (trace != nullptr) trace->push_back({input, output.setpoint});
+    if (output.phase == GuardedMove::Phase::kDone) break;
+
+    p.tool.drive(output.setpoint, step_s);
+    const Scene::Contacts contacts = p.scene.collide(p.world, step_s, law);
+    p.world.step(step_s);
+    if (contacts.depth_max_m > kTunnelled_m) {
+      result.failure = "a part has gone through another";
+      return result;
+    }
+    input.time_ns += step_us * kMicrosecond_ns;
+    input.pose = p.tool.pose();
+    input.wrench = p.scene.wrench();
+    input.wrench_fresh = true;
+  }
+  if (ode_messages() != messages_before) {
+    result.failure = "the contact solver did not converge";
+    return result;
+  }
+  result.valid = true;
+  result.move = *guarded.result();
+  result.touching = p.scene.touching();
+  return result;
+}
+
+bool OdeRollout::in_collision(const Pose& tool_pose) {
+  physics_->tool.place(tool_pose);
+  physics_->scene.set_oversize(task_.oversize_m);
+  return physics_->scene.overlap_m() > kCollision_m;
+}
+
+std::unique_ptr<Rollout> OdeRollout::clone() const { return std::make_unique<OdeRollout>(task_); }
+
+}  // namespace tenon::sim

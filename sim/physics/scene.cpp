@@ -1,0 +1,79 @@
+#include "sim/physics/scene.h"
+
+#include <algorithm>
+#include <span>
+
+#include "sim/physics/contacts/contact_points.h"
+#include "sim/physics/contacts/touching_points.h"
+
+namespace tenon::sim {
+namespace {
+
+double deepest_m(std::span<const dContactGeom> points) {
+  double depth_m = 0.0;
+  for (const dContactGeom& point : points) {
+    depth_m = std::max(depth_m, static_cast<double>(point.depth));
+  }
+  return depth_m;
+}
+
+}  // namespace
+
+Scene::Scene(const std::vector<Shape>& held, const std::vector<Shape>& environment,
+             const Pose& X_WT) {
+  for (const Shape& shape : held) held_.emplace_back(shape);
+  for (const Shape& shape : environment) environment_.emplace_back(shape).place(X_WT);
+}
+
+void Scene::attach(dBodyID body, const Pose& X_BP) {
+  for (ShapeGeometry& shape : held_) shape.attach(body, X_BP);
+}
+
+void Scene::set_oversize(double oversize_m) {
+  if (oversize_m == oversize_m_) return;
+  oversize_m_ = oversize_m;
+  for (ShapeGeometry& shape : held_) shape.set_oversize(oversize_m);
+}
+
+Scene::Contacts Scene::collide(OdeWorld& world, double step_s, const ContactLaw& law) {
+  points_.clear();
+  touching_.clear();
+  PairPoints buffer;
+  for (std::size_t h = 0; h < held_.size(); ++h) {
+    for (std::size_t e = 0; e < environment_.size(); ++e) {
+      const auto found = touching_points(held_[h], environment_[e], buffer);
+      if (found.empty()) continue;
+      touching_.push_back({h, e});
+      points_.insert(points_.end(), found.begin(), found.end());
+    }
+  }
+  Contacts result;
+  result.depth_max_m = deepest_m(points_);
+  thin_out(points_);
+  result.points = points_.size();
+  joints_.make(world, points_, law, step_s);
+  return result;
+}
+
+double Scene::overlap_m() const {
+  double overlap_m = 0.0;
+  PairPoints buffer;
+  for (const ShapeGeometry& held : held_) {
+    for (const ShapeGeometry& environment : environment_) {
+      overlap_m = std::max(overlap_m, deepest_m(touching_points(held, environment, buffer)));
+    }
+  }
+  return overlap_m;
+}
+
+std::string Scene::name(const Pair& pair) const {
+  return held_[pair.held].name() + "-" + environment_[pair.environment].name();
+}
+
+std::vector<std::string> Scene::touching() const {
+  std::vector<std::string> names;
+  for (const Pair& pair : touching_) names.push_back(name(pair));
+  return names;
+}
+
+}  // namespace tenon::sim

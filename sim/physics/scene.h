@@ -1,0 +1,73 @@
+#pragma once
+// The held part among its environment: which of their shapes touch, and the forces between them.
+// Surfaces, contact points and solver each have a folder of their own; the scene puts them in
+// order. Private to sim; one thread.
+
+#include <ode/ode.h>
+
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "shared/math/pose.h"
+#include "shared/task/task.h"
+#include "sim/physics/contacts/contact_law.h"
+#include "sim/physics/solver/contact_joints.h"
+#include "sim/physics/solver/ode_world.h"
+#include "sim/physics/surfaces/shape_geometry.h"
+
+namespace tenon::sim {
+
+/// Contact geometry of the held part against the environment. Pairs are collided in a fixed order,
+/// so that the solver sees the same constraints in the same order whatever happened before.
+class Scene {
+ public:
+  /// @param X_WT where the environment's task frame stands in the world
+  Scene(const std::vector<Shape>& held, const std::vector<Shape>& environment,
+        const Pose& X_WT = {});
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  /// Hangs the held shapes on a body. @param X_BP the tool frame in the body's frame
+  void attach(dBodyID body, const Pose& X_BP = {});
+
+  /// Every size of the held part as drawn and this much more.
+  void set_oversize(double oversize_m);
+
+  struct Contacts {
+    std::size_t points = 0;
+    double depth_max_m = 0.0;
+  };
+  /// Makes this step's contact joints. Call before OdeWorld::step().
+  Contacts collide(OdeWorld& world, double step_s, const ContactLaw& law);
+
+  /// After the step: force and torque of the environment on the attached body, world axes, about
+  /// the body's origin.
+  [[nodiscard]] Vector6 wrench() const { return joints_.wrench(); }
+
+  /// Deepest overlap at the body's present pose, m; 0 where nothing touches.
+  [[nodiscard]] double overlap_m() const;
+
+  /// Indices of two shapes that touch.
+  struct Pair {
+    std::size_t held = 0;
+    std::size_t environment = 0;
+  };
+  /// Of the last collide(), each pair once.
+  [[nodiscard]] const std::vector<Pair>& pairs() const { return touching_; }
+  /// "held-environment"
+  [[nodiscard]] std::string name(const Pair& pair) const;
+  /// The names of all pairs.
+  [[nodiscard]] std::vector<std::string> touching() const;
+
+ private:
+  std::deque<ShapeGeometry> held_;
+  std::deque<ShapeGeometry> environment_;
+  double oversize_m_ = 0.0;
+  std::vector<dContactGeom> points_;  // of the last collide(), thinned out
+  ContactJoints joints_;
+  std::vector<Pair> touching_;
+};
+
+}  // namespace tenon::sim

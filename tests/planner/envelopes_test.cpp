@@ -1,0 +1,61 @@
+// What a step's envelopes span.
+
+#include "planner/judge/envelopes.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "planner/judge/plan_draft.h"
+#include "tests/planner/room_task.h"
+
+namespace tenon::planner {
+namespace {
+
+GuardedMove::Result result_of(Outcome outcome, double x_m, std::uint16_t bits = 0) {
+  GuardedMove::Result result;
+  result.outcome = outcome;
+  result.travelled.x() = x_m;
+  result.signature.bits = bits;
+  return result;
+}
+
+Chain chain_of(const GuardedMove::Result& move) {
+  Chain chain;
+  chain.moves = {move};
+  chain.steps = {0};
+  return chain;
+}
+
+TEST(Envelopes, SpanWhatWasSeenAndTheMarginsAndNothingElse) {
+  const Task task = room_task();
+  const std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.1};
+  const Plan draft = draft_plan(task, task.starts.front(), {}, displacements);
+  // 1 mm, 0.05 m/s * 10 ms, and 0.6 * 3 N / 1000 N/m.
+  EXPECT_NEAR(envelope_margins(draft, task).position_m, 1e-3 + 0.5e-3 + 1.8e-3, 1e-8);
+
+  const std::vector<Chain> contacts = {chain_of(result_of(Outcome::kContact, 0.04, 0b0010)),
+                                       chain_of(result_of(Outcome::kContact, 0.06, 0b0110))};
+  const Plan plan = with_envelopes(draft, task, contacts);
+  const OutcomeRule& rule = plan.steps[0].rule(Outcome::kContact);
+  EXPECT_NEAR(rule.envelope.travelled_min[0], 0.04 - 3.3e-3, 1e-8);
+  EXPECT_NEAR(rule.envelope.travelled_max[0], 0.06 + 3.3e-3, 1e-8);
+  EXPECT_EQ(rule.envelope.always.bits, 0b0010);
+  EXPECT_EQ(rule.envelope.possible.bits, 0b0110);
+  EXPECT_EQ(rule.envelope.travelled_max[2], 0.0);
+  EXPECT_EQ(plan.steps[0].rule(Outcome::kReached).successor, kSuccessorFail);
+}
+
+TEST(Envelopes, WhereSomeMissedTheContactItMayComeAnywhereUpToTheWholeWay) {
+  const Task task = room_task();
+  const std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.1};
+  const Plan draft = draft_plan(task, task.starts.front(), {}, displacements);
+  const std::vector<Chain> chains = {chain_of(result_of(Outcome::kContact, 0.04)),
+                                     chain_of(result_of(Outcome::kReached, 0.10))};
+  const Plan plan = with_envelopes(draft, task, chains);
+  EXPECT_GT(plan.steps[0].rule(Outcome::kContact).envelope.travelled_max[0], 0.10);
+  EXPECT_GT(plan.steps[0].rule(Outcome::kReached).envelope.travelled_min[0], 0.09);
+}
+
+}  // namespace
+}  // namespace tenon::planner

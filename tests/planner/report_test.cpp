@@ -1,0 +1,65 @@
+// The report on a plan, and its table of steps.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "planner/report/html_report.h"
+#include "planner/report/inspection.h"
+#include "planner/report/summary.h"
+#include "tests/planner/room_plan.h"
+
+namespace tenon::planner {
+namespace {
+
+TEST(Report, IsOneDocumentWithoutOutsideResources) {
+  const Task task = room_task();
+  const PlanReport report = planned(task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  const std::string html = html_report(*report.plan, task, report.certification, report.validation);
+  EXPECT_EQ(html.rfind("<!DOCTYPE html>", 0), 0U);
+  for (const char* outside : {"http:", "https:", "src=", "href=", "url(", "@import"}) {
+    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
+  }
+  EXPECT_NE(html.find("the chain holds"), std::string::npos);
+  EXPECT_NE(html.find("Seen from above"), std::string::npos);
+  EXPECT_EQ(html.find("Seen from the side"), std::string::npos);
+}
+
+TEST(Report, SaysWhichContactSettlesEachDirection) {
+  Task task = room_task();
+  Shape wall;
+  wall.name = "low";  // the double's name for whatever is touched at a low coordinate
+  wall.size_m = Vector3::Constant(0.1);
+  wall.pose.position_m = {-0.6, 0.0, 0.0};
+  task.environment = {wall};
+  const PlanReport report = planned(task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  const std::string html = html_report(*report.plan, task, report.certification, report.validation);
+  EXPECT_NE(html.find("<li>x 42.4 mm &rarr; 0.0 mm: contact with "), std::string::npos);
+  EXPECT_NE(html.find("<li>y 42.4 mm &rarr; 0.0 mm: contact with "), std::string::npos);
+}
+
+TEST(Report, ShowsTheUncertaintyThatABaselineDoesNotKnow) {
+  const Task task = room_task();
+  PlannerOptions options;
+  options.method = PlanMethod::kSingleParticle;
+  const PlanReport report = planned(task, room(), options);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  const std::string html = html_report(*report.plan, task, report.certification, report.validation);
+  EXPECT_NE(html.find("baseline <b>single-particle</b>"), std::string::npos);
+  EXPECT_NE(html.find("Root of u of the random starts"), std::string::npos);
+  EXPECT_EQ(html.find("Why it works"), std::string::npos);
+}
+
+TEST(Report, TheStepTableNamesEveryStepAndItsEnd) {
+  const PlanReport report = planned(room_task());
+  const std::string table = step_table(*report.plan);
+  EXPECT_NE(table.find("-> done"), std::string::npos);
+  EXPECT_NE(table.find("contact"), std::string::npos);
+  EXPECT_NE(plan_json(*report.plan, report.bytes.size()).find("\"successor\": \"done\""),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace tenon::planner

@@ -1,0 +1,96 @@
+#include "tests/support/whole_run.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "hw/arm/describe_fault.h"
+
+namespace tenon::tests {
+namespace {
+
+constexpr std::int64_t kRunMax_cycles = 500'000;
+
+sim::VirtualCell::Options world_of(const WholeRun::Options& options) {
+  sim::VirtualCell::Options world;
+  world.start = options.start;
+  world.seed = options.seed;
+  world.offset = options.offset;
+  world.faults = options.faults;
+  world.world = options.world;
+  world.joints = options.joints;
+  return world;
+}
+
+}  // namespace
+
+WholeRun::WholeRun(const Cell& cell, const Task& task, const Plan& plan, const Options& options,
+                   executor::CycleSink* sink)
+    : cell_description_(cell), plan_(plan) {
+  const Robot& robot = cell.robot;
+  if (options.link == nullptr) {
+    link_ = std::make_unique<sim::VirtualLink>(
+        sim::VirtualBus::Parameters{.bitrate_bps = robot.bitrate_bps,
+                                    .bit_error_rate = options.bit_error_rate,
+                                    .seed = options.seed},
+        robot.master_node);
+    bus_faults_ = std::make_unique<sim::BusFaults>(options.faults, robot.master_node);
+    if (!options.faults.empty()) bus().set_disturbance(bus_faults_.get());
+  }
+  sim::Link* link = options.link != nullptr ? options.link : link_.get();
+  const executor::CycleRunner::Parameters loop;
+  arm_ = std::make_unique<hw::CanopenArm>(robot, link->master());
+  controller_ = std::make_unique<executor::Controller>(cell, plan, options.controller);
+  runner_ = std::make_unique<executor::CycleRunner>(*arm_, *controller_, sink, loop);
+  virtual_cell_ = std::make_unique<sim::VirtualCell>(cell, task, world_of(options));
+  time_ = std::make_unique<sim::Lockstep>(
+      *arm_, *virtual_cell_, *link,
+      sim::Lockstep::Parameters{.cycle_ns = std::int64_t{1000} * robot.cycle_us,
+                                .feedback_deadline = loop.feedback_deadline});
+}
+
+bool WholeRun::prepare() { return time_->prepare(); }
+
+bool WholeRun::cycle() { return time_->cycle(*runner_); }
+
+WholeRun::Result WholeRun::run() {
+  if (prepare()) {
+    while (cycle() && statistics().cycles < kRunMax_cycles) {
+    }
+  }
+  return result();
+}
+
+WholeRun::Result WholeRun::result() const {
+  Result result;
+  result.ending = controller_->ending();
+  result.truth = virtual_cell_->truth();
+  result.steps = controller_->runner().report_count();
+  result.cycles = statistics().cycles;
+  const std::string fault = hw::describe(arm_->fault(), cell_description_.robot);
+  result.reason = executor::describe(result.ending, plan_, cell_description_, fault);
+  return result;
+}
+
+void WholeRun::leave_alone(double duration_s) {
+  time_->leave_alone(static_cast<std::int64_t>(1e9 * duration_s));
+}
+
+Vector6 draw_offset(const Task& task, const Start& start, std::uint64_t seed, double& distance) {
+  // Box-Muller on raw bits: the same draws on every platform.
+  std::mt19937_64 random(seed);
+  const auto uniform = [&] { return (static_cast<double>(random() >> 11) + 0.5) * 0x1.0p-53; };
+  Vector6 offset = Vector6::Zero();
+  double squares = 0.0;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(task.coordinates, axis)) continue;
+    const double normal =
+        std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
+    offset[axis] = normal * start.sigma[axis];
+    squares += normal * normal;
+  }
+  distance = std::sqrt(squares);
+  return offset;
+}
+
+}  // namespace tenon::tests

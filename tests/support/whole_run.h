@@ -1,0 +1,89 @@
+#pragma once
+// The whole chain in one process and in virtual time: executor, CANopen master, virtual bus in its
+// own bit rate, virtual arm. No thread, no clock; no sleep either, unless the ends of a foreign bus
+// are given.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "executor/loop/controller.h"
+#include "executor/loop/cycle_runner.h"
+#include "hw/arm/canopen_arm.h"
+#include "shared/cell/cell.h"
+#include "shared/plan/plan.h"
+#include "shared/task/task.h"
+#include "sim/cell/faults/bus_faults.h"
+#include "sim/cell/faults/fault.h"
+#include "sim/cell/lockstep/lockstep.h"
+#include "sim/cell/lockstep/virtual_link.h"
+#include "sim/cell/virtual_arm/virtual_cell.h"
+
+namespace tenon::tests {
+
+/// One run of a plan. Use it on one thread, the one that made it.
+class WholeRun {
+ public:
+  struct Options {
+    std::string start;
+    std::uint64_t seed = 1;
+    Vector6 offset = Vector6::Zero();
+    executor::Controller::Parameters controller;
+    double bit_error_rate = 0.0;
+    std::vector<sim::Fault> faults;  ///< of the bus and of devices
+    sim::WorldDraw world;
+    std::optional<JointVector> joints;  ///< where the arm stands; unset: at the start
+    sim::Link* link = nullptr;          ///< in place of the virtual bus; must outlive the run
+  };
+  struct Result {
+    executor::Ending ending;
+    sim::Truth truth;
+    std::size_t steps = 0;
+    std::int64_t cycles = 0;
+    std::string reason;  ///< one line
+  };
+
+  WholeRun(const Cell& cell, const Task& task, const Plan& plan, const Options& options,
+           executor::CycleSink* sink = nullptr);
+
+  /// Brings the arm up. False: it failed, see arm().fault().
+  bool prepare();
+  /// One control cycle. False once the run is over.
+  bool cycle();
+  /// prepare() and cycles to the end.
+  Result run();
+  /// As it stands.
+  [[nodiscard]] Result result() const;
+
+  /// Virtual time goes on without the executor: what a killed process looks like from the bus.
+  void leave_alone(double duration_s);
+
+  /// Not where another link was given.
+  [[nodiscard]] sim::VirtualBus& bus() { return link_->bus(); }
+  [[nodiscard]] const sim::Lockstep::Statistics& statistics() const { return time_->statistics(); }
+  [[nodiscard]] hw::CanopenArm& arm() { return *arm_; }
+  [[nodiscard]] executor::Controller& controller() { return *controller_; }
+  [[nodiscard]] executor::CycleRunner& runner() { return *runner_; }
+  [[nodiscard]] sim::VirtualCell& cell() { return *virtual_cell_; }
+  [[nodiscard]] std::int64_t now_ns() const { return time_->now_ns(); }
+
+ private:
+  Cell cell_description_;
+  Plan plan_;
+  std::unique_ptr<sim::VirtualLink> link_;
+  std::unique_ptr<sim::BusFaults> bus_faults_;
+  std::unique_ptr<hw::CanopenArm> arm_;
+  std::unique_ptr<executor::Controller> controller_;
+  std::unique_ptr<executor::CycleRunner> runner_;
+  std::unique_ptr<sim::VirtualCell> virtual_cell_;
+  std::unique_ptr<sim::Lockstep> time_;
+};
+
+/// An offset of the environment: normal with the start's sigma on every search coordinate. Its
+/// Mahalanobis distance comes back in `distance`.
+[[nodiscard]] Vector6 draw_offset(const Task& task, const Start& start, std::uint64_t seed,
+                                  double& distance);
+
+}  // namespace tenon::tests
