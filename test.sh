@@ -1,19 +1,19 @@
 #!/bin/bash
 # Checks Tenon: installs what is missing, then format, lint, build and tests, the tests that need a kernel
-# with CAN, and the tests again under sanitizers. Exit status 0 if all of it passed.
+# with CAN, and units, whole runs and threads again under sanitizers. Exit status 0 if all of it passed.
 #
 #   ./test.sh                  what a commit needs
 #   ./test.sh full             what a release needs: also every start of every task and variant, the long
 #                              studies, clang-tidy and its analyzer on every file, changed or not
-#   ./test.sh [full] STAGE...  only these stages, of: format lint unit guest asan
-#                              and on demand: tsan fuzz
+#   ./test.sh [full] STAGE...  only these stages, of: format lint unit guest asan tsan
+#                              and on demand: fuzz
 #
 # A run of all stages that passed leaves the hash of the tree that it passed on in build/tested: who asks
 # whether a commit was tested compares it with `git rev-parse COMMIT^{tree}`.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")" || exit 1
 
-all_stages=(format lint unit guest asan)
+all_stages=(format lint unit guest asan tsan)
 jobs=$(nproc)
 tier=commit
 
@@ -112,6 +112,7 @@ stage_asan() {
 }
 
 stage_tsan() {
+  build dev
   build tsan
   run_tests tsan
 }
@@ -132,7 +133,7 @@ stages=("$@")
 ((${#stages[@]})) || stages=("${all_stages[@]}")
 for stage in "${stages[@]}"; do
   if ! declare -F "stage_$stage" >/dev/null; then
-    echo "test.sh: no stage '$stage'; there are: ${all_stages[*]} tsan fuzz" >&2
+    echo "test.sh: no stage '$stage'; there are: ${all_stages[*]} fuzz" >&2
     exit 2
   fi
 done

@@ -6,9 +6,6 @@
 namespace tenon::executor {
 namespace {
 
-// Decoded plans carry floats: equality up to their rounding is no excess.
-constexpr double kRounding = 1.0 + 1e-6;
-
 class Checker {
  public:
   Checker(const Plan& plan, const Cell& cell)
@@ -28,7 +25,7 @@ class Checker {
   }
 
   void check_latency() {
-    if (loop_.latency_s() <= plan_.latency_max_s * kRounding) return;
+    if (loop_.latency_s() <= plan_.latency_max_s * kPlanRounding) return;
     refuse(
         "latency (n + 1/2) T + tau_arm = (%d + 0.5) * %g + %g = %g s, the plan allows at most %g s",
         loop_.delay_cycles, loop_.cycle_s, loop_.lag_s, loop_.latency_s(), plan_.latency_max_s);
@@ -37,12 +34,12 @@ class Checker {
   void check_compliance() {
     const Compliance& c = plan_.compliance;
     const double damping_least = damping_least_Nspm(loop_);
-    if (c.damping_Nspm * kRounding < damping_least) {
+    if (c.damping_Nspm * kPlanRounding < damping_least) {
       refuse("damping D = %g Ns/m, must be at least 1.5 k_e tau = 1.5 * %g * %g = %g Ns/m",
              c.damping_Nspm, loop_.stiffness_Npm, loop_.latency_s(), damping_least);
     }
     const double mass_most = mass_most_kg(loop_, c.damping_Nspm);
-    if (c.mass_kg > mass_most * kRounding) {
+    if (c.mass_kg > mass_most * kPlanRounding) {
       refuse("mass M = %g kg, must be at most D tau = %g * %g = %g kg", c.mass_kg, c.damping_Nspm,
              loop_.latency_s(), mass_most);
     }
@@ -67,7 +64,7 @@ class Checker {
           cell_.force_fault_N);
     }
     const double noise_N = cell_.robot.sensor.force_noise_N;
-    if (force_on_N * kRounding < 5.0 * noise_N) {
+    if (force_on_N * kPlanRounding < 5.0 * noise_N) {
       refuse("parameter set %d: force_on = %g N, must be at least 5 sigma = 5 * %g = %g N",
              static_cast<int>(index), force_on_N, noise_N, 5.0 * noise_N);
     }

@@ -17,8 +17,6 @@ namespace {
 constexpr double kDifference = 1e-4;
 // Two ways to one corner give the same joints, m or rad.
 constexpr double kSameCorner = 1e-3;
-// Decoded plans carry floats: equality up to their rounding is no excess.
-constexpr double kRounding = 1.0 + 1e-6;
 
 void keep_largest(JointExtreme& largest, int joint, double value) {
   if (value > largest.value) largest = {joint, value};
@@ -69,7 +67,7 @@ std::optional<std::string> StepWalk::run(const JointVector& middle) {
   const bool walked = walk_moves(middle) && walk_edges(middle);
   const double share =
       std::max(demand_.speed.value, std::sqrt(demand_.acceleration.value * kShareMax));
-  if (share > kShareMax * kRounding) demand_.slow_down = kShareMax / share;
+  if (share > kShareMax * kPlanRounding) demand_.slow_down = kShareMax / share;
   look_at_limits();
   return verdict(walked);
 }

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "executor/sensing/wrench_estimator.h"
 #include "shared/base/text.h"
 
 namespace tenon::executor {
 namespace {
 
-constexpr double kGravity_mps2 = 9.80665;
 constexpr std::size_t kPosesMin = 4;
 constexpr double kNoTurn_rad = 0.01;
 

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
+#include "executor/sensing/wrench_estimator.h"
+
 namespace tenon::executor {
 namespace {
 
 constexpr std::size_t kTurnedJoints = 3;
 constexpr double kLimitMargin_rad = 0.1;
-constexpr double kGravity_mps2 = 9.80665;
 
 // The last joints that turn, outermost first.
 std::vector<std::size_t> last_turning(const Robot& robot) {

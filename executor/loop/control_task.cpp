@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "executor/motion/joint_difference.h"
+#include "shared/base/time_units.h"
 
 namespace tenon::executor {
 namespace {
 
-constexpr double kNanosecond_s = 1e-9;
 // Drives are at rest when no joint has moved further than this for so many cycles.
 constexpr double kRestMotion = 2e-5;
 constexpr int kRestCycles = 20;

@@ -8,7 +8,6 @@ namespace tenon::executor {
 
 JointStop::JointStop(const JointVector& position, const JointVector& velocity, const Robot& robot)
     : position_(position), velocity_(velocity) {
-  constexpr double kRest = 1e-9;
   double slope = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const double speed = std::abs(velocity[i]);

@@ -6,9 +6,6 @@
 namespace tenon::executor {
 namespace {
 
-// Slower than this (m/s, rad/s) is rest.
-constexpr double kRest = 1e-9;
-
 // The tighter of a translation's and a rotation's limit, for a motion scaled to speed 1.
 double scaled(double limit, double speed, double angular_limit, double angular_speed) {
   double most = std::numeric_limits<double>::infinity();

@@ -7,6 +7,9 @@
 
 namespace tenon::executor {
 
+/// Slower than this is rest, m/s or rad/s.
+inline constexpr double kRest = 1e-9;
+
 class StopRamp {
  public:
   struct Sample {

@@ -6,7 +6,6 @@
 namespace tenon::executor {
 namespace {
 
-constexpr double kGravity_mps2 = 9.80665;
 // A reading at this share of the range may have been cut off.
 constexpr double kSaturation = 0.999;
 

@@ -14,6 +14,9 @@
 
 namespace tenon::executor {
 
+/// Standard gravity.
+inline constexpr double kGravity_mps2 = 9.80665;
+
 class WrenchEstimator {
  public:
   enum class Status : std::uint8_t {

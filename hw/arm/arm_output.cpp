@@ -2,14 +2,10 @@
 
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/sync.h"
+#include "shared/base/time_units.h"
 #include "shared/canopen/constants.h"
 
 namespace tenon::hw {
-namespace {
-
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-
-}  // namespace
 
 ArmOutput::ArmOutput(const Robot& robot, CanBus& bus, std::span<JointChannel> joints,
                      ArmSupervision& supervision, ArmCounters& counters)

@@ -4,6 +4,7 @@
 
 #include "hw/canopen/object_setting.h"
 #include "hw/cia402/drive_state.h"
+#include "shared/base/time_units.h"
 #include "shared/canopen/constants.h"
 
 namespace tenon::hw {
@@ -11,8 +12,6 @@ namespace {
 
 using canopen::object_of;
 using cia402::DriveState;
-
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 
 }  // namespace
 

@@ -26,7 +26,7 @@ class Frames {
         {std::move(name), id, data_bytes, node, part, robot_.cycle_us, false, kEnablingSteps});
   }
   void heartbeat(const std::string& of, std::uint8_t node, CyclePart part) {
-    frames_.push_back({"heartbeat of " + of, canopen::kHeartbeat + node, 1, node, part,
+    frames_.push_back({"heartbeat of " + of, tenon::canopen::kHeartbeat + node, 1, node, part,
                        robot_.heartbeat_ms * kMicrosecondsPerMillisecond, false, 0});
   }
   [[nodiscard]] std::vector<BusFrame> take() { return std::move(frames_); }
@@ -56,7 +56,7 @@ void add_packed_commands(const Robot& robot, Frames& frames) {
 
 std::vector<BusFrame> frame_set(const Robot& robot) {
   Frames frames(robot);
-  frames.cyclic("SYNC", canopen::kSync, 0, robot.master_node, CyclePart::kSync);
+  frames.cyclic("SYNC", tenon::canopen::kSync, 0, robot.master_node, CyclePart::kSync);
   frames.cyclic("force", kForceCobId, 8, robot.sensor.node, CyclePart::kFeedback);
   frames.cyclic("torque", kTorqueCobId, 8, robot.sensor.node, CyclePart::kFeedback);
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {

@@ -10,13 +10,13 @@
 #include "hw/can/monotonic_clock.h"
 #include "hw/can/poll_wait.h"
 #include "hw/can/slcan.h"
+#include "shared/base/time_units.h"
 
 namespace tenon::hw {
 namespace {
 
 constexpr std::string_view kAccepted = "\r";
 constexpr std::string_view kRefused = "\a";
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 
 }  // namespace
 

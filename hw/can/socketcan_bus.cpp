@@ -23,7 +23,7 @@
 namespace tenon::hw {
 namespace {
 
-[[noreturn]] void refuse(const std::string& interface, const std::string& what) {
+[[noreturn]] void fail(const std::string& interface, const std::string& what) {
   const std::string reason = std::strerror(errno);
   throw InputError("CAN bus socketcan:" + interface + ": " + what + " (" + reason + ")");
 }
@@ -76,8 +76,8 @@ SocketcanBus::SocketcanBus(const std::string& interface, std::uint32_t bitrate_b
     : interface_(interface),
       socket_(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)) {
   if (socket_.get() < 0) {
-    refuse(interface,
-           "this kernel has no CAN sockets; load can-raw (modprobe can-raw), or use slcan:");
+    fail(interface,
+         "this kernel has no CAN sockets; load can-raw (modprobe can-raw), or use slcan:");
   }
   const SocketcanLink link = read_link(interface);
   check_link(link, interface, bitrate_bps, burst_frames);
@@ -94,13 +94,13 @@ void SocketcanBus::configure_socket() {
       ::setsockopt(socket, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof(off)) != 0 ||
       ::setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on)) != 0 ||
       ::setsockopt(socket, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on)) != 0) {
-    refuse(interface_, "cannot set the socket's options");
+    fail(interface_, "cannot set the socket's options");
   }
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = index_;
   if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
-    refuse(interface_, "cannot bind");
+    fail(interface_, "cannot bind");
   }
 }
 

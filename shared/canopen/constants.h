@@ -17,6 +17,8 @@ inline constexpr std::uint32_t kRpdo2 = 0x300;
 inline constexpr std::uint32_t kSdoResponse = 0x580;
 inline constexpr std::uint32_t kSdoRequest = 0x600;
 inline constexpr std::uint32_t kHeartbeat = 0x700;
+/// The identifier within a COB-ID's value (7.5.2).
+inline constexpr std::uint32_t kIdMask = 0x7FF;
 
 // NMT commands and states (7.2.8).
 inline constexpr std::uint8_t kNmtStart = 0x01;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/base/time_units.h"
 #include "shared/motion/path_limits.h"
 
 namespace tenon {
@@ -19,8 +20,6 @@ constexpr int kSettlingExtraSamples = 2;
 constexpr double kBlockedSpeed_mps = 1e-3;
 constexpr double kBlockedSpeed_radps = 1e-2;
 constexpr std::int64_t kBlocked_ns = 50'000'000;
-
-constexpr double kNanosecond_s = 1e-9;
 
 double stiffness(const Compliance& compliance, int axis) {
   return axis < 3 ? compliance.stiffness_Npm : compliance.stiffness_Nmpr;

@@ -22,6 +22,9 @@ using Successor = std::uint8_t;
 inline constexpr Successor kSuccessorDone = 0xFE;
 inline constexpr Successor kSuccessorFail = 0xFF;
 inline constexpr std::size_t kMaxSteps = 200;
+/// A decoded plan's numbers are floats: to be above a bound by no more than this factor is no
+/// excess.
+inline constexpr double kPlanRounding = 1.0 + 1e-6;
 
 /// Which planner made a plan, and thereby what it was certified for.
 enum class PlanMethod : std::uint8_t {

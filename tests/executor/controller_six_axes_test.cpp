@@ -13,12 +13,6 @@
 namespace tenon::executor {
 namespace {
 
-Plan arm_plan() {
-  Plan plan = touch_and_slide_plan();
-  plan.start.position_m = Vector3(0.0, 0.0, 0.05);
-  return plan;
-}
-
 JointVector arm_start() { return *dry_run(arm_plan(), hand_made_arm_cell()).start; }
 
 Controller::Parameters go_to_start() {

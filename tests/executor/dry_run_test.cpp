@@ -27,13 +27,6 @@ std::string refusal(const Plan& plan, const Cell& cell) {
   return run.refusals.empty() ? "" : run.refusals.front();
 }
 
-// The hand-made plan where the six-axis arm has room for it.
-Plan arm_plan() {
-  Plan plan = touch_and_slide_plan();
-  plan.start.position_m = Vector3(0.0, 0.0, 0.05);
-  return plan;
-}
-
 TEST(DryRun, AGantrysDemandIsWhatTheTurnedFramesMakeOfThePlansSpeed) {
   const DryRun run = dry_run(touch_and_slide_plan(), hand_made_cell());
   EXPECT_TRUE(run.refusals.empty());

@@ -276,32 +276,32 @@ TEST(BringUp, PrepareStartsOverAfterAFault) {
   EXPECT_EQ(gantry.arm.state(), ArmState::kDisabled);
 }
 
-std::string refusal(const Robot& robot) {
+std::string robot_refusal(const Robot& robot) {
   return tests::refusal([&] { check_robot(robot); });
 }
 
 TEST(CheckRobot, RefusesWhatCannotBeDriven) {
-  EXPECT_EQ(refusal(gantry_robot()), "accepted");
+  EXPECT_EQ(robot_refusal(gantry_robot()), "accepted");
   Robot robot = gantry_robot();
   robot.joints[1].node = 4;
-  EXPECT_EQ(refusal(robot),
+  EXPECT_EQ(robot_refusal(robot),
             "robot 'gantry': node 4 is given to both joint y and the force/torque sensor; every "
             "node needs its own");
   robot = gantry_robot();
   robot.cycle_us = 2'000'001;
-  EXPECT_NE(refusal(robot).find("60C2h"), std::string::npos);
+  EXPECT_NE(robot_refusal(robot).find("60C2h"), std::string::npos);
   robot = gantry_robot();
   robot.joints[0].counts_per_unit = 0.0;
-  EXPECT_NE(refusal(robot).find("joint x: |counts per unit| = 0"), std::string::npos);
+  EXPECT_NE(robot_refusal(robot).find("joint x: |counts per unit| = 0"), std::string::npos);
   robot = gantry_robot();
   robot.joints[0].counts_per_unit = 1e10;
-  EXPECT_NE(refusal(robot).find("must fit 32 bits"), std::string::npos);
+  EXPECT_NE(robot_refusal(robot).find("must fit 32 bits"), std::string::npos);
   robot = gantry_robot();
   robot.heartbeat_timeout_ms = 150;
-  EXPECT_NE(refusal(robot).find("at least twice"), std::string::npos);
+  EXPECT_NE(robot_refusal(robot).find("at least twice"), std::string::npos);
   robot = gantry_robot();
   robot.joints.clear();
-  EXPECT_NE(refusal(robot).find("0 joints"), std::string::npos);
+  EXPECT_NE(robot_refusal(robot).find("0 joints"), std::string::npos);
 }
 
 TEST(InterpolationPeriod, IsExactOrNothing) {

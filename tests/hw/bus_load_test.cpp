@@ -55,14 +55,14 @@ TEST(BusLoad, TheLastOfAnOddNumberOfPackedTargetsHasFourBytes) {
   EXPECT_EQ(bus_load(robot).frames_per_cycle, 8u);
 }
 
-std::string refusal(const Robot& robot) {
+std::string load_refusal(const Robot& robot) {
   return tests::refusal([&] { check_bus_load(robot); });
 }
 
 TEST(BusLoad, TooManyFramesAreRefusedWithTheNumbers) {
   Robot robot = gantry_robot();
   robot.cycle_us = 1000;
-  EXPECT_EQ(refusal(robot),
+  EXPECT_EQ(load_refusal(robot),
             "robot 'gantry': 9 frames every 1000 us load a bus of 1000000 bit/s with 88.7 % "
             "(107.5 % in the worst case of stuffing), allowed are 85 %; take a cycle of at "
             "least 2000 us");
@@ -70,7 +70,7 @@ TEST(BusLoad, TooManyFramesAreRefusedWithTheNumbers) {
 
 TEST(BusLoad, TheRefusalNamesPackingWhereItHelps) {
   // SYNC 47 + 6 (95 + 111) + 2 * 111 = 1505 bits in 2000; worst 55 + 6 (115 + 135) + 270 = 1825.
-  EXPECT_EQ(refusal(six_axes(1)),
+  EXPECT_EQ(load_refusal(six_axes(1)),
             "robot 'gantry': 15 frames every 2000 us load a bus of 1000000 bit/s with 75.2 % "
             "(91.2 % in the worst case of stuffing), allowed are 85 %; take targets_per_frame: 2 "
             "or a cycle of at least 3000 us");

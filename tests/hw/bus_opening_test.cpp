@@ -91,7 +91,7 @@ TEST(SlcanStream, LineThatWasCutByAFullDeviceIsFinishedAndLaterOnesAreDropped) {
   ::close(adapter);
 }
 
-std::string refusal(const std::string& uri) {
+std::string opening_refusal(const std::string& uri) {
   return tests::refusal([&] { (void)open_bus(uri, 1'000'000); });
 }
 
@@ -100,14 +100,14 @@ TEST(OpenBus, RefusesWhatItCannotOpenInOneLineThatNamesIt) {
        {"", "can0", "slcan:ttyACM0", "slcan://", "slcan://127.0.0.1", "slcan://127.0.0.1:x",
         "slcan://127.0.0.1:70000", "slcan:/dev/nothing", "slcan-listen://127.0.0.1:-1",
         "socketcan:", "socketcan:none0", "socketcan:a-name-that-is-too-long"}) {
-    const std::string message = refusal(uri);
+    const std::string message = opening_refusal(uri);
     EXPECT_NE(message, "accepted") << uri;
     EXPECT_NE(message.find(uri), std::string::npos) << uri << " -> " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
   }
   const auto server = open_bus("slcan-listen://127.0.0.1:0", 1'000'000);
   const std::string taken = "slcan-listen://127.0.0.1:" + std::to_string(listening_port(*server));
-  EXPECT_NE(refusal(taken).find("cannot listen"), std::string::npos);
+  EXPECT_NE(opening_refusal(taken).find("cannot listen"), std::string::npos);
 }
 
 TEST(OpenBus, RefusesABitrateThatSlcanCannotSet) {

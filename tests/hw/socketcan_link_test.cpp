@@ -72,7 +72,8 @@ Bytes virtual_interface() {
                              attribute(18, attribute(1, text("vcan")))}));
 }
 
-std::string refusal(const Bytes& bytes, std::uint32_t bitrate_bps, std::uint32_t burst_frames) {
+std::string link_refusal(const Bytes& bytes, std::uint32_t bitrate_bps,
+                         std::uint32_t burst_frames) {
   const auto link = parse_link(bytes);
   if (!link) return "nothing was read";
   return tests::refusal([&] { check_link(*link, "can0", bitrate_bps, burst_frames); });
@@ -129,30 +130,30 @@ TEST(SocketcanLink, AnAttributeWithABadLengthEndsTheReading) {
 }
 
 TEST(SocketcanLink, WhatCannotServeIsRefusedInOneLineThatSaysWhatToDo) {
-  EXPECT_EQ(refusal(controller(65, 0, 0), 500'000, 10), "accepted");
-  EXPECT_EQ(refusal(controller(65, 1, 0), 500'000, 1), "accepted") << "a warning is no reason";
-  EXPECT_EQ(refusal(controller(0, 4, 0), 500'000, 1),
+  EXPECT_EQ(link_refusal(controller(65, 0, 0), 500'000, 10), "accepted");
+  EXPECT_EQ(link_refusal(controller(65, 1, 0), 500'000, 1), "accepted") << "a warning is no reason";
+  EXPECT_EQ(link_refusal(controller(0, 4, 0), 500'000, 1),
             "CAN bus socketcan:can0: the interface is down; "
             "'ip link set can0 up type can bitrate 500000'");
   EXPECT_EQ(
-      refusal(controller(65, 3, 0), 500'000, 1),
+      link_refusal(controller(65, 3, 0), 500'000, 1),
       "CAN bus socketcan:can0: the controller is bus-off; check wiring, termination and every "
       "node's bit rate, then 'ip link set can0 down', then "
       "'ip link set can0 up type can bitrate 500000'");
-  EXPECT_EQ(refusal(controller(65, 0, 0), 1'000'000, 1),
+  EXPECT_EQ(link_refusal(controller(65, 0, 0), 1'000'000, 1),
             "CAN bus socketcan:can0: runs at 500000 bit/s, wanted are 1000000 (robot file, or "
             "--bitrate); "
             "'ip link set can0 down', then 'ip link set can0 up type can bitrate 1000000'");
-  EXPECT_NE(refusal(controller(65, 0, 2), 500'000, 1).find("only listens"), std::string::npos);
-  EXPECT_EQ(refusal(controller(65, 0, 0), 500'000, 11),
+  EXPECT_NE(link_refusal(controller(65, 0, 2), 500'000, 1).find("only listens"), std::string::npos);
+  EXPECT_EQ(link_refusal(controller(65, 0, 0), 500'000, 11),
             "CAN bus socketcan:can0: the transmit queue holds 10 frames, a cycle sends 11 at once; "
             "'ip link set can0 txqueuelen 100'");
-  EXPECT_EQ(refusal(virtual_interface(), 1'000'000, 11), "accepted");
+  EXPECT_EQ(link_refusal(virtual_interface(), 1'000'000, 11), "accepted");
 }
 
 TEST(SocketcanLink, ABitrateMayDifferByWhatAClockCannotDivideInto) {
-  EXPECT_EQ(refusal(controller(65, 0, 0), 502'500, 1), "accepted");
-  EXPECT_NE(refusal(controller(65, 0, 0), 502'600, 1), "accepted");
+  EXPECT_EQ(link_refusal(controller(65, 0, 0), 502'500, 1), "accepted");
+  EXPECT_NE(link_refusal(controller(65, 0, 0), 502'600, 1), "accepted");
 }
 
 TEST(SocketcanLink, TheKernelToldOfItsLoopback) {

@@ -11,8 +11,6 @@
 namespace tenon {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 Eigen::Quaterniond rpy(double roll, double pitch, double yaw) {
   return Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3::UnitY()) *
          Eigen::AngleAxisd(roll, Vector3::UnitX());
@@ -48,11 +46,11 @@ Robot arm6() {
         joint(Joint::Kind::kRevolute, {Vector3(x, y, z), rpy(r, p, w)}, Vector3::UnitZ(), limit));
   };
   add(0, 0, 0, 0, 0, 0, 2.967);
-  add(0, 0, 0, kPi / 2, 0, 0, 2.967);
-  add(0, 0.350, 0, 0, kPi, 0, 2.714);
-  add(0, 0, 0, -kPi / 2, kPi, 0, 2.967);
-  add(0, 0.005263, 0.305, kPi / 2, 0, kPi, 2.967);
-  add(0, 0, 0, -kPi / 2, 0, 0, 2.967);
+  add(0, 0, 0, std::numbers::pi / 2, 0, 0, 2.967);
+  add(0, 0.350, 0, 0, std::numbers::pi, 0, 2.714);
+  add(0, 0, 0, -std::numbers::pi / 2, std::numbers::pi, 0, 2.967);
+  add(0, 0.005263, 0.305, std::numbers::pi / 2, 0, std::numbers::pi, 2.967);
+  add(0, 0, 0, -std::numbers::pi / 2, 0, 0, 2.967);
   robot.flange = {Vector3(0, 0, 0.08), Eigen::Quaterniond::Identity()};
   return robot;
 }
@@ -80,7 +78,7 @@ TEST(SerialChain, AQuarterTurnOfAPlanarArmPointsItSideways) {
   robot.joints.push_back(
       joint(Joint::Kind::kRevolute, {Vector3(0.3, 0, 0), rpy(0, 0, 0)}, Vector3::UnitZ(), 3.0));
   robot.flange = {Vector3(0.2, 0, 0), rpy(0, 0, 0)};
-  const Pose pose = SerialChain(robot).flange({kPi / 2, -kPi / 2});
+  const Pose pose = SerialChain(robot).flange({std::numbers::pi / 2, -std::numbers::pi / 2});
   EXPECT_NEAR(pose.position_m.x(), 0.2, 1e-15);
   EXPECT_NEAR(pose.position_m.y(), 0.3, 1e-15);
   EXPECT_NEAR(rotation_vector(pose.orientation).norm(), 0.0, 1e-15);

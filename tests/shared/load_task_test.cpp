@@ -19,7 +19,7 @@ using tests::refusal;
 using tests::replaced;
 using tests::ScratchFolder;
 
-constexpr const char* kTask = R"(name: peg
+constexpr const char* kPegTask = R"(name: peg
 coordinates: [x, z]
 held:
   - {name: peg, cylinder: {diameter_m: 0.02, length_m: 0.1}, pose: {position_m: [0, 0, 0.05]}}
@@ -46,12 +46,12 @@ variants:
 )";
 
 Task load(const ScratchFolder& folder, const char* variant) {
-  return load_task(folder.put("peg.yaml", kTask).string() + variant);
+  return load_task(folder.put("peg.yaml", kPegTask).string() + variant);
 }
 
 std::string refused(const ScratchFolder& folder, const char* what, const char* by,
                     const char* variant) {
-  const std::string file = folder.put("peg.yaml", replaced(kTask, what, by)).string();
+  const std::string file = folder.put("peg.yaml", replaced(kPegTask, what, by)).string();
   const std::string line = refusal([&] { (void)load_task(file + variant); });
   return line.starts_with(file) ? line.substr(file.size()) : line;
 }
@@ -87,7 +87,7 @@ TEST(TaskVariant, ChangesTheEntriesOfAListByName) {
 
 TEST(TaskVariant, LeavesAliasesOfWhatItChangesAlone) {
   const ScratchFolder folder;
-  const std::string text = replaced(replaced(kTask, "goal: {pose: {position_m: [0, 0, -0.04]}",
+  const std::string text = replaced(replaced(kPegTask, "goal: {pose: {position_m: [0, 0, -0.04]}",
                                              "goal: {pose: {position_m: *place}"),
                                     "above, pose: {position_m: [0, 0, 0.1]}",
                                     "above, pose: {position_m: &place [0, 0, 0.1]}");
@@ -119,7 +119,7 @@ TEST(TaskVariant, HasANameAndAHashOfItsOwn) {
 
 TEST(TaskVariant, AFileWhoseNameHoldsTheMarkIsThatFile) {
   const ScratchFolder folder;
-  const auto file = folder.put("peg#fine.yaml", kTask);
+  const auto file = folder.put("peg#fine.yaml", kPegTask);
   EXPECT_EQ(load_task(file).name, "peg");
   EXPECT_EQ(load_task(file.string() + "#fine").name, "peg/fine");
 }
@@ -189,7 +189,7 @@ constexpr const char* kBlock =
 Task with_hole(const ScratchFolder& folder, const std::string& sizes) {
   const std::string ring = "  - {name: hole, ring: {" + sizes +
                            "}, pose: {position_m: [0.3, 0.2, -0.05], rotation_rad: [0, 0, 0.1]}}\n";
-  return load_task(folder.put("hole.yaml", replaced(kTask, kBlock, ring)));
+  return load_task(folder.put("hole.yaml", replaced(kPegTask, kBlock, ring)));
 }
 
 // Whether a point of the ring's own frame lies in one of the first `count` boxes.
@@ -254,7 +254,7 @@ TEST(TaskInserted, IsABoxAroundTheTip) {
   // Turned by a quarter about z: its x edge lies along the task's y.
   const Task task = load_task(folder.put(
       "peg.yaml",
-      replaced(kTask, "uncertainty_m2: 2e-6}",
+      replaced(kPegTask, "uncertainty_m2: 2e-6}",
                "uncertainty_m2: 2e-6, inserted: {box_m: [0.02, 0.04, 0.06], pose: "
                "{position_m: [0, 0, -0.05], rotation_rad: [0, 0, 1.5707963267948966]}}}")));
   const auto at = [&task](double x_m, double y_m, double z_m) {

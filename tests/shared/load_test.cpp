@@ -18,7 +18,7 @@ using tests::refusal;
 using tests::replaced;
 using tests::ScratchFolder;
 
-constexpr const char* kTask = R"(name: tiny
+constexpr const char* kTinyTask = R"(name: tiny
 coordinates: [x, rz]
 held:
   - {name: peg, cylinder: {diameter_m: 0.02, length_m: 0.1}, pose: {position_m: [0, 0, 0.05]}}
@@ -77,7 +77,7 @@ void expect_refusals(const char* good, const std::vector<BadLine>& lines, Load l
 
 TEST(LoadTask, ReadsEveryValue) {
   const ScratchFolder folder;
-  const Task task = load_task(folder.put("task.yaml", kTask));
+  const Task task = load_task(folder.put("task.yaml", kTinyTask));
   EXPECT_EQ(task.name, "tiny");
   EXPECT_EQ(task.coordinates, 0b100001);
   ASSERT_EQ(task.held.size(), 1U);
@@ -107,16 +107,16 @@ TEST(LoadTask, ReadsEveryValue) {
   EXPECT_EQ(task.rollout_step_us, 2000);
 
   // A fast tool gets a step in which it goes no further than 0.5 mm.
-  const std::string fast = replaced(replaced(kTask, "  rollout_step_s: 0.002\n", ""),
+  const std::string fast = replaced(replaced(kTinyTask, "  rollout_step_s: 0.002\n", ""),
                                     "approach_mps: 0.1", "approach_mps: 1.0");
   EXPECT_EQ(load_task(folder.put("fast.yaml", fast)).rollout_step_us, 500);
 }
 
 TEST(LoadTask, HashIsThatOfTheBytes) {
   const ScratchFolder folder;
-  const std::uint64_t hash = load_task(folder.put("a.yaml", kTask)).hash;
-  EXPECT_EQ(load_task(folder.put("b.yaml", kTask)).hash, hash);
-  EXPECT_NE(load_task(folder.put("c.yaml", std::string(kTask) + "\n")).hash, hash);
+  const std::uint64_t hash = load_task(folder.put("a.yaml", kTinyTask)).hash;
+  EXPECT_EQ(load_task(folder.put("b.yaml", kTinyTask)).hash, hash);
+  EXPECT_NE(load_task(folder.put("c.yaml", std::string(kTinyTask) + "\n")).hash, hash);
 }
 
 TEST(LoadTask, RefusesEachBadCoordinateAndSpreadWithItsPlace) {
@@ -141,7 +141,8 @@ TEST(LoadTask, RefusesEachBadCoordinateAndSpreadWithItsPlace) {
       {"coordinates: [x, rz]", "coordinates: []",
        ":2: coordinates: has 0 entries, must have 1 to 6"},
   };
-  expect_refusals(kTask, lines, [](const std::filesystem::path& file) { (void)load_task(file); });
+  expect_refusals(kTinyTask, lines,
+                  [](const std::filesystem::path& file) { (void)load_task(file); });
 }
 
 TEST(LoadTask, RefusesEachBadNameAndShapeWithItsPlace) {
@@ -168,7 +169,8 @@ TEST(LoadTask, RefusesEachBadNameAndShapeWithItsPlace) {
       {"name: tiny", "name: [a]",
        ":1: name is a list, must be a name of 1 to 63 printable ASCII characters"},
   };
-  expect_refusals(kTask, lines, [](const std::filesystem::path& file) { (void)load_task(file); });
+  expect_refusals(kTinyTask, lines,
+                  [](const std::filesystem::path& file) { (void)load_task(file); });
 }
 
 TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
@@ -204,12 +206,13 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
        ":3: is not YAML: end of sequence flow not found"},
       {"physics:\n", "---\n", ": must hold one YAML document, holds 2"},
   };
-  expect_refusals(kTask, lines, [](const std::filesystem::path& file) { (void)load_task(file); });
+  expect_refusals(kTinyTask, lines,
+                  [](const std::filesystem::path& file) { (void)load_task(file); });
 }
 
 TEST(LoadTask, RefusesFrictionThatLooksLikeContact) {
   const ScratchFolder folder;
-  const auto file = folder.put("task.yaml", replaced(kTask, "high: 0.6", "high: 1.2"));
+  const auto file = folder.put("task.yaml", replaced(kTinyTask, "high: 0.6", "high: 1.2"));
   const std::string line = refusal([&] { (void)load_task(file); });
   EXPECT_TRUE(line.starts_with(file.string() + ":14: contact: force_on = 6 N must be at least"))
       << line;

@@ -10,8 +10,6 @@
 namespace tenon {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 Eigen::Matrix4d matrix_of(const Pose& pose) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() = pose.orientation.toRotationMatrix();
@@ -43,7 +41,8 @@ TEST(Pose, ComposeAndInverseAreThoseOfMatrices) {
 
 TEST(Pose, RotationVectorGoesThereAndBackAtEverySize) {
   RandomPoses random;
-  for (const double angle_rad : {0.0, 1e-300, 1e-12, 1e-9, 1e-6, 1e-3, 1.0, 3.0, kPi - 1e-9}) {
+  for (const double angle_rad :
+       {0.0, 1e-300, 1e-12, 1e-9, 1e-6, 1e-3, 1.0, 3.0, std::numbers::pi - 1e-9}) {
     for (int i = 0; i < 50; ++i) {
       const Vector3 vector = angle_rad * random.vector(1.0).normalized();
       const Vector3 back = rotation_vector(rotation_of(vector));
@@ -59,11 +58,12 @@ TEST(Pose, RotationVectorIgnoresTheSignOfTheQuaternion) {
 }
 
 TEST(Pose, HalfATurnHasTheAngleOfHalfATurn) {
-  EXPECT_NEAR(rotation_vector(Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0)).norm(), kPi, 1e-15);
+  EXPECT_NEAR(rotation_vector(Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0)).norm(), std::numbers::pi,
+              1e-15);
 }
 
 TEST(Pose, QuarterTurnAboutZTakesXToY) {
-  const Eigen::Quaterniond turn = rotation_of({0.0, 0.0, kPi / 2});
+  const Eigen::Quaterniond turn = rotation_of({0.0, 0.0, std::numbers::pi / 2});
   EXPECT_TRUE((turn * Vector3::UnitX()).isApprox(Vector3::UnitY(), 1e-15));
 }
 
@@ -79,7 +79,7 @@ TEST(Pose, DisplacementTakesOnePoseToTheOther) {
 
 TEST(Pose, DisplacementIsInTheAxesOfTheCommonFrame) {
   // A tool that is turned a quarter about z: moving it along the frame's x is still x.
-  const Pose from{Vector3(1.0, 2.0, 3.0), rotation_of({0.0, 0.0, kPi / 2})};
+  const Pose from{Vector3(1.0, 2.0, 3.0), rotation_of({0.0, 0.0, std::numbers::pi / 2})};
   Vector6 displacement;
   displacement << 0.1, 0.0, 0.0, 0.2, 0.0, 0.0;
   const Pose to = displaced(from, displacement);

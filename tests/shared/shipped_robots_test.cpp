@@ -23,8 +23,6 @@ namespace {
 
 using Status = SerialChain::InverseStatus;
 
-constexpr double kPi = std::numbers::pi;
-
 Robot shipped(const std::string& name) {
   return load_robot(tests::in_tree("hw/robots/" + name + "/robot.yaml"));
 }
@@ -37,11 +35,11 @@ struct LiteralFrame {
 };
 /// The LWA 4P's frames, written down a second time.
 constexpr LiteralFrame kLwa4p[] = {{0, 0, 0, 0, 0, 0},
-                                   {0, 0, 0, kPi / 2, 0, 0},
-                                   {0, 0.350, 0, 0, kPi, 0},
-                                   {0, 0, 0, -kPi / 2, kPi, 0},
-                                   {0, 0.005263, 0.305, kPi / 2, 0, kPi},
-                                   {0, 0, 0, -kPi / 2, 0, 0}};
+                                   {0, 0, 0, std::numbers::pi / 2, 0, 0},
+                                   {0, 0.350, 0, 0, std::numbers::pi, 0},
+                                   {0, 0, 0, -std::numbers::pi / 2, std::numbers::pi, 0},
+                                   {0, 0.005263, 0.305, std::numbers::pi / 2, 0, std::numbers::pi},
+                                   {0, 0, 0, -std::numbers::pi / 2, 0, 0}};
 
 KDL::Chain kdl_chain(const std::string& robot) {
   KDL::Chain chain;
@@ -216,7 +214,7 @@ TEST(Lwa4p, HasTheArmsOwnValues) {
     EXPECT_EQ(joint.node, i + 3);
     EXPECT_EQ(joint.kind, Joint::Kind::kRevolute);
     EXPECT_EQ(joint.mode, Joint::Mode::kInterpolatedPosition);
-    EXPECT_NEAR(joint.counts_per_unit * kPi / 2, 90000.0, 1e-9);
+    EXPECT_NEAR(joint.counts_per_unit * std::numbers::pi / 2, 90000.0, 1e-9);
     EXPECT_EQ(joint.upper, i == 2 ? 2.714 : 2.967);
     EXPECT_EQ(joint.lower, -joint.upper);
     EXPECT_EQ(joint.speed_max, 1.26);

@@ -112,4 +112,10 @@ Plan touch_and_slide_plan() {
   return plan;
 }
 
+Plan arm_plan() {
+  Plan plan = touch_and_slide_plan();
+  plan.start.position_m = Vector3(0.0, 0.0, 0.05);
+  return plan;
+}
+
 }  // namespace tenon::executor

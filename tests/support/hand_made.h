@@ -27,5 +27,7 @@ namespace tenon::executor {
 
 /// Wall at x = 0.13 expected: +x to contact, then +y by 0.04 to the end.
 [[nodiscard]] Plan touch_and_slide_plan();
+/// The same where the hand-made six-axis arm has room for it.
+[[nodiscard]] Plan arm_plan();
 
 }  // namespace tenon::executor

@@ -9,7 +9,6 @@ namespace {
 
 constexpr std::uint32_t kCrcBits = 15;
 constexpr std::uint32_t kCrcPolynomial = 0x4599;
-constexpr std::uint32_t kTailBits = 10;  // CRC delimiter, ACK slot and delimiter, end of frame
 constexpr std::size_t kClassicMax_bytes = 8;
 
 /// Counts bits as they are sent, stuff bits included, and computes CRC-15 over the others.

@@ -24,6 +24,8 @@ namespace tenon::sim {
 
 /// Between two frames, or after an error frame.
 inline constexpr std::uint32_t kIntermissionBits = 3;
+/// What ends a frame: CRC delimiter, ACK slot and delimiter, end of frame.
+inline constexpr std::uint32_t kTailBits = 10;
 
 struct FrameBits {
   std::uint32_t nominal = 0;  ///< at the bit rate of arbitration

@@ -11,7 +11,6 @@ namespace tenon::sim {
 namespace {
 
 constexpr std::uint32_t kAfterAckSlotBits = 8;  // ACK delimiter, end of frame
-constexpr std::uint32_t kTailBits = 10;         // after the data phase of an FD frame
 constexpr std::uint32_t kErrorFrameBits = 6 + 8;
 constexpr std::uint32_t kPauseBits = 8;
 constexpr std::uint32_t kRecessiveBits = 11;

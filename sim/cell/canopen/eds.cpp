@@ -14,8 +14,6 @@ std::string hex(std::uint64_t value, int digits = 1) {
   return format("%0*llX", digits, static_cast<unsigned long long>(value));
 }
 
-bool is_signed(DataType type) { return lowest(type) < 0; }
-
 /// CiA 301, 7.4.7.1: index of the data type.
 int type_code(DataType type) {
   switch (type) {

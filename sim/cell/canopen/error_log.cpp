@@ -12,7 +12,6 @@ namespace {
 constexpr std::uint16_t kErrorHistory = 0x1003;
 constexpr std::uint16_t kEmergencyCobId = 0x1014;
 constexpr std::uint32_t kAbortNoData = 0x08000024;
-constexpr std::uint32_t kIdMask = 0x7FF;
 
 /// Bits of 1001h by the class of the error code (CiA 301, 7.2.7.1 and 7.5.2.2).
 std::uint8_t register_bits(std::uint16_t code) {
@@ -132,7 +131,7 @@ void ErrorLog::update_register() {
 std::optional<CanFrame> ErrorLog::emergency(std::uint16_t code) const {
   if ((cob_id_.value & canopen::kPdoInvalid) != 0) return std::nullopt;
   CanFrame frame;
-  frame.id = static_cast<std::uint32_t>(cob_id_.value) & kIdMask;
+  frame.id = static_cast<std::uint32_t>(cob_id_.value) & canopen::kIdMask;
   frame.length = 8;
   frame.data = {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8),
                 static_cast<std::uint8_t>(register_.value)};

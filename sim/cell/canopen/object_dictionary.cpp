@@ -8,10 +8,6 @@
 namespace tenon::sim {
 namespace {
 
-bool is_signed(DataType type) {
-  return type == DataType::kI8 || type == DataType::kI16 || type == DataType::kI32;
-}
-
 /// Settings are kept by 1010h; what a PDO brings is process data, and no command has a value.
 bool is_setting(const ObjectEntry& entry) {
   return entry.access == Access::kReadWrite && entry.mappable != Mappable::kReceive &&
@@ -37,6 +33,10 @@ std::size_t size_bytes(DataType type) {
       return 0;
   }
   return 0;
+}
+
+bool is_signed(DataType type) {
+  return type == DataType::kI8 || type == DataType::kI16 || type == DataType::kI32;
 }
 
 std::int64_t lowest(DataType type) {

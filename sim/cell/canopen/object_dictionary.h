@@ -30,6 +30,7 @@ enum class Structure : std::uint8_t { kVariable, kArray, kRecord };
 
 /// Bytes on the wire; 0 for a text, whose length is its own.
 [[nodiscard]] std::size_t size_bytes(DataType type);
+[[nodiscard]] bool is_signed(DataType type);
 [[nodiscard]] std::int64_t lowest(DataType type);
 [[nodiscard]] std::int64_t highest(DataType type);
 

@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::size_t kFrameBits = 64;
 constexpr std::uint32_t kExtended = 0x20000000;
-constexpr std::uint32_t kIdMask = 0x7FF;
 
 /// Objects 0002h to 0007h: bits that a receiver skips (CiA 301, 7.4.7.1).
 std::size_t dummy_bits(std::uint32_t index) {
@@ -114,7 +113,7 @@ void PdoParameters::add_mapping(const PdoDefaults& defaults) {
 std::uint32_t PdoParameters::check_cob_id(std::int64_t value) const {
   const std::uint32_t wanted = static_cast<std::uint32_t>(value);
   const bool stays_valid = valid() && (wanted & canopen::kPdoInvalid) == 0;
-  if (stays_valid && (wanted & kIdMask) != cob_id()) return canopen::kAbortDeviceState;
+  if (stays_valid && (wanted & canopen::kIdMask) != cob_id()) return canopen::kAbortDeviceState;
   if ((wanted & kExtended) != 0) return canopen::kAbortValue;
   if ((wanted & canopen::kPdoInvalid) == 0 && is_restricted_cob_id(wanted & ~canopen::kPdoNoRtr)) {
     return canopen::kAbortValue;
@@ -157,7 +156,7 @@ bool PdoParameters::valid() const { return (cob_id_->value & canopen::kPdoInvali
 bool PdoParameters::remote_allowed() const { return (cob_id_->value & canopen::kPdoNoRtr) == 0; }
 
 std::uint32_t PdoParameters::cob_id() const {
-  return static_cast<std::uint32_t>(cob_id_->value) & kIdMask;
+  return static_cast<std::uint32_t>(cob_id_->value) & canopen::kIdMask;
 }
 
 std::uint8_t PdoParameters::transmission_type() const {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "shared/base/time_units.h"
+
 namespace tenon::sim {
 namespace {
 
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-constexpr std::int64_t kNanosecondsPerMicrosecond = 1'000;
 constexpr std::uint16_t kDeviceName = 0x1008;
 constexpr std::uint16_t kHardwareVersion = 0x1009;
 constexpr std::uint16_t kSoftwareVersion = 0x100A;

@@ -3,13 +3,14 @@
 #include <cmath>
 #include <vector>
 
+#include "shared/base/time_units.h"
+
 namespace tenon::sim {
 namespace {
 
 constexpr std::int64_t kSelfTest_ns = 5'000'000;
-constexpr double kNanosecondsPerSecond = 1e9;
 constexpr std::uint32_t kServoDrive = 0x00020192;  // 1000h: CiA 402, servo drive
-constexpr std::uint32_t kProductCode = 0x0402;
+constexpr std::uint32_t kDriveProductCode = 0x0402;
 constexpr std::uint32_t kWindowOff = 0xFFFFFFFF;
 constexpr std::uint16_t kErrorUnderVoltage = 0x3220;
 constexpr std::uint16_t kErrorTemperature = 0x4310;
@@ -46,7 +47,7 @@ Drive402::Drive402(const Parameters& parameters)
     : parameters_(parameters),
       node_({.node = parameters.node,
              .device_type = kServoDrive,
-             .product_code = kProductCode,
+             .product_code = kDriveProductCode,
              .name = parameters.name,
              .receive_pdos = pdos(parameters.node, canopen::kRpdo1, canopen::kControlword),
              .transmit_pdos = pdos(parameters.node, canopen::kTpdo1, canopen::kStatusword)},

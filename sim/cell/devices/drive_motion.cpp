@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/base/time_units.h"
+
 namespace tenon::sim {
 namespace {
-
-constexpr double kNanosecondsPerSecond = 1e9;
 
 /// A late or lost SYNC finds the axis still moving on; this many periods after the last one it
 /// stops.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "shared/base/time_units.h"
+
 namespace tenon::sim {
 namespace {
 
@@ -15,7 +17,6 @@ constexpr Mappable kRpdo = Mappable::kReceive;
 constexpr Mappable kTpdo = Mappable::kTransmit;
 constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min();  // the type's own
 constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 struct Row {
   std::uint16_t index;

@@ -9,7 +9,7 @@ namespace tenon::sim {
 namespace {
 
 constexpr std::uint32_t kMeasuringDevice = 0x00000194;  // 1000h: CiA 404
-constexpr std::uint32_t kProductCode = 0x0404;
+constexpr std::uint32_t kSensorProductCode = 0x0404;
 constexpr std::uint16_t kTare = 0x2003;
 constexpr std::int64_t kCountMax = 32767;
 
@@ -37,7 +37,7 @@ ForceTorqueNode::ForceTorqueNode(const ForceTorqueSensor& sensor, std::uint64_t 
       imperfections_(imperfections),
       node_({.node = sensor.node,
              .device_type = kMeasuringDevice,
-             .product_code = kProductCode,
+             .product_code = kSensorProductCode,
              .name = name,
              .receive_pdos = {},
              .transmit_pdos = pdos(sensor.node)},

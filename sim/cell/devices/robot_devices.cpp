@@ -23,7 +23,6 @@ EdsFile eds_file(const SlaveNode& node, const std::string& name) {
 }  // namespace
 
 DriveParameters drive_parameters_of(const Joint& joint) {
-  constexpr double kPermille = 1000.0;
   constexpr double kMilli = 1000.0;
   DriveParameters parameters;
   parameters.node = joint.node;

@@ -9,6 +9,9 @@
 
 namespace tenon::sim {
 
+/// Torques of CiA 402 are thousandths of the motor's rated one (6071h, 6077h).
+inline constexpr double kPermille = 1000.0;
+
 [[nodiscard]] DriveParameters drive_parameters_of(const Joint& joint);
 
 struct EdsFile {

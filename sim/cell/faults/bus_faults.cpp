@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "shared/base/time_units.h"
+
 namespace tenon::sim {
 namespace {
-
-constexpr double kNanosecondsPerSecond = 1e9;
 
 std::int64_t nanoseconds(double time_s) {
   return static_cast<std::int64_t>(time_s * kNanosecondsPerSecond);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shared/base/error.h"
+#include "shared/base/time_units.h"
 #include "shared/task/find_start.h"
 #include "sim/cell/devices/drive_402.h"
 #include "sim/cell/devices/force_torque_node.h"
@@ -20,10 +21,8 @@
 namespace tenon::sim {
 namespace {
 
-constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kOverlapMax_m = 1e-5;
 constexpr double kStandstill = 1e-4;  // m/s or rad/s
-constexpr double kPermille = 1000.0;
 
 ForceTorqueNode::Imperfections sensor_imperfections(const WorldDraw& world) {
   ForceTorqueNode::Imperfections imperfections;
