@@ -14,7 +14,7 @@
 # ---------------------------------------------------------------------------------------------
 # Who may use whom. One row per target: everything that it may link, and therefore include.
 # ---------------------------------------------------------------------------------------------
-set(TENON_LIBRARIES shared shared_config lcmtypes
+set(TENON_LIBRARIES shared shared_system shared_config lcmtypes
     planner planner_belief planner_search planner_judge planner_report
     executor executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
@@ -22,11 +22,12 @@ set(TENON_LIBRARIES shared shared_config lcmtypes
     sim_physics sim_cell sim_evaluation sim_evaluation_chain)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
-set(TENON_MAY_USE_shared_config shared yaml-cpp urdfdom::urdfdom_model
+set(TENON_MAY_USE_shared_system shared Threads::Threads)
+set(TENON_MAY_USE_shared_config shared shared_system yaml-cpp urdfdom::urdfdom_model
                                 console_bridge::console_bridge nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
 set(TENON_MAY_USE_planner       shared planner_belief planner_search planner_judge)
-set(TENON_MAY_USE_planner_belief shared Threads::Threads)
+set(TENON_MAY_USE_planner_belief shared shared_system)
 set(TENON_MAY_USE_planner_search shared planner_belief)
 set(TENON_MAY_USE_planner_judge  shared planner_belief)
 set(TENON_MAY_USE_planner_report shared planner planner_belief planner_judge
@@ -37,15 +38,16 @@ set(TENON_MAY_USE_executor_record         shared executor_states)
 set(TENON_MAY_USE_executor_motion         shared executor_states)
 set(TENON_MAY_USE_executor_sensing        shared executor_states)
 set(TENON_MAY_USE_executor_dry_run        shared executor_motion nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_executor_loop           shared executor_states executor_record executor_motion
-                                          executor_sensing executor_dry_run)
+set(TENON_MAY_USE_executor_loop           shared shared_system executor_states executor_record
+                                          executor_motion executor_sensing executor_dry_run)
 set(TENON_MAY_USE_executor_identification shared executor_states executor_record executor_motion
                                           executor_sensing executor_loop)
 # Message types and LCM are telemetry's alone.
-set(TENON_MAY_USE_executor_telemetry      shared executor_states executor_record executor_motion
-                                          executor_loop executor_identification lcmtypes LCM::lcm
-                                          Threads::Threads nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_hw_can        shared)
+set(TENON_MAY_USE_executor_telemetry      shared shared_system executor_states executor_record
+                                          executor_motion executor_loop executor_identification
+                                          lcmtypes LCM::lcm Threads::Threads
+                                          nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_hw_can        shared shared_system)
 set(TENON_MAY_USE_hw_canopen    shared)
 set(TENON_MAY_USE_hw_cia402     shared)
 set(TENON_MAY_USE_hw_arm        shared hw_canopen hw_cia402)
@@ -53,13 +55,14 @@ set(TENON_MAY_USE_hw_load       shared hw_arm)
 set(TENON_MAY_USE_sim_physics    shared ODE::ODE)
 # The arm's links and joints are bodies of the same engine.
 set(TENON_MAY_USE_sim_cell       shared sim_physics ODE::ODE nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_sim_evaluation shared sim_cell Threads::Threads nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_sim_evaluation shared shared_system sim_cell nlohmann_json::nlohmann_json)
 # The evaluation runs executor and virtual arm in lockstep inside one process.
 set(TENON_MAY_USE_sim_evaluation_chain shared sim_evaluation sim_cell
                                        executor_dry_run executor_loop executor_telemetry hw_arm)
 
 # The mains compose. What is common to all of them:
-set(TENON_MAY_USE_any_main      shared Threads::Threads CLI11::CLI11 nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_any_main      shared shared_system Threads::Threads CLI11::CLI11
+                                nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_tenon-plan     planner planner_report sim_physics shared_config)
 set(TENON_MAY_USE_tenon-inspect  planner planner_report sim_physics shared_config)
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification

@@ -5,7 +5,6 @@
 #include <thread>
 #include <utility>
 
-#include "executor/loop/monotonic_clock.h"
 #include "executor/loop/realtime.h"
 #include "executor/main_exec_output.h"
 #include "hw/arm/canopen_arm.h"
@@ -15,6 +14,7 @@
 #include "hw/can/open_bus.h"
 #include "hw/can/recording_bus.h"
 #include "shared/base/error.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::executor {
 
@@ -111,11 +111,11 @@ void TaskRun::run() {
 void TaskRun::run_arm() {
   ask_for_real_time(options_);
   constexpr std::int64_t kPoll_ns = 1'000'000;
-  std::int64_t now_ns = MonotonicClock::now_ns();
+  std::int64_t now_ns = monotonic_now_ns();
   while (!stop_.load(std::memory_order_relaxed) && !arm_->prepare(now_ns)) {
     if (arm_->state() == ArmState::kFault) throw InputError(hw::describe(arm_->fault(), robot()));
     arm_->wait(kPoll_ns);
-    now_ns = MonotonicClock::now_ns();
+    now_ns = monotonic_now_ns();
   }
   runner_.run(stop_);
 }

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "hw/can/monotonic_clock.h"
 #include "hw/can/open_bus.h"
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/object_value.h"
@@ -19,6 +18,7 @@
 #include "shared/base/error.h"
 #include "shared/canopen/constants.h"
 #include "shared/config/command_line.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::hw {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -16,6 +16,7 @@
 #include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
+#include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
 #include "sim/physics/rollout/ode_rollout.h"
 
@@ -104,10 +105,8 @@ int run(const Arguments& a) {
   const Start& start = chosen_start(task, a.start);
   const sim::OdeRollout rollout(task);
 
-  const auto began = std::chrono::steady_clock::now();
-  const auto now_s = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  };
+  const std::int64_t began_ns = monotonic_now_ns();
+  const auto now_s = [&] { return 1e-9 * static_cast<double>(monotonic_now_ns() - began_ns); };
   planner::PlanReport report = planner::make_plan(task, start, rollout, options, now_s);
   report.adapted = std::move(adapted);
 

@@ -6,10 +6,15 @@
 #include <cstdio>
 #include <string>
 
+#include "shared/system/monotonic_clock.h"
+
 namespace tenon {
 
 Progress::Progress(std::size_t all, std::size_t before)
-    : all_(all), before_(before), terminal_(::isatty(STDERR_FILENO) == 1), begin_(Clock::now()) {}
+    : all_(all),
+      before_(before),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      begin_ns_(monotonic_now_ns()) {}
 
 Progress::~Progress() {
   if (shown_) std::fputs("\r\033[K", stderr);
@@ -19,7 +24,7 @@ void Progress::count(bool succeeded) {
   ++made_;
   succeeded_ += succeeded;
   if (!terminal_) return;
-  const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
+  const double elapsed_s = 1e-9 * static_cast<double>(monotonic_now_ns() - begin_ns_);
   const double rate_ps = static_cast<double>(made_) / std::max(elapsed_s, 1e-3);
   const std::size_t so_far = before_ + made_;
   constexpr std::size_t kWidth = 30;

@@ -2,8 +2,8 @@
 // How far tenon-evaluate is: one line that is written over, on a terminal alone. Reads the clock of
 // the system; one thread at a time.
 
-#include <chrono>
 #include <cstddef>
+#include <cstdint>
 
 namespace tenon {
 
@@ -19,14 +19,13 @@ class Progress {
   void count(bool succeeded);
 
  private:
-  using Clock = std::chrono::steady_clock;
   std::size_t all_;
   std::size_t before_;
   std::size_t made_ = 0;
   std::size_t succeeded_ = 0;
   bool terminal_;
   bool shown_ = false;
-  Clock::time_point begin_;
+  std::int64_t begin_ns_;
 };
 
 }  // namespace tenon

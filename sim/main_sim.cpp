@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "hw/can/monotonic_clock.h"
 #include "hw/can/open_bus.h"
 #include "hw/can/slcan_server.h"
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
+#include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
 #include "sim/cell/devices/robot_devices.h"
 #include "sim/cell/faults/fault_spec.h"
@@ -82,9 +82,9 @@ struct Lateness {
 Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer* server) {
   Lateness lateness;
   OneClient one_client;
-  std::int64_t due_ns = hw::monotonic_now_ns();
+  std::int64_t due_ns = monotonic_now_ns();
   while (stop_requested == 0) {
-    const std::int64_t now_ns = hw::monotonic_now_ns();
+    const std::int64_t now_ns = monotonic_now_ns();
     if (now_ns >= due_ns) {
       lateness.count(now_ns - due_ns);
       due_ns += kTick_ns * ((now_ns - due_ns) / kTick_ns + 1);
@@ -95,7 +95,7 @@ Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer*
         one_client.finished(server->clients() > 0, cell.at_standstill(), now_ns)) {
       break;
     }
-    bus.wait(std::max<std::int64_t>(0, due_ns - hw::monotonic_now_ns()));
+    bus.wait(std::max<std::int64_t>(0, due_ns - monotonic_now_ns()));
   }
   return lateness;
 }
@@ -152,8 +152,7 @@ int simulate(const CommandLine& line) {
   }
   raise_priority();
   announce(line, *bus);
-  sim::FaultyBus faulty_bus(*bus, options.faults, cell_file.robot.master_node,
-                            hw::monotonic_now_ns());
+  sim::FaultyBus faulty_bus(*bus, options.faults, cell_file.robot.master_node, monotonic_now_ns());
   const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr);
 
   sim::Truth truth = cell.truth();

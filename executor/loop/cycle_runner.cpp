@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "executor/loop/monotonic_clock.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::executor {
 namespace {
@@ -69,11 +69,11 @@ void CycleRunner::run(const std::atomic<bool>& stop) noexcept {
   const auto deadline_ns =
       static_cast<std::int64_t>(parameters_.feedback_deadline * static_cast<double>(cycle_ns_));
   const auto late_sync_ns = static_cast<std::int64_t>(kLateSync * static_cast<double>(cycle_ns_));
-  std::int64_t due_ns = MonotonicClock::now_ns() + cycle_ns_;
+  std::int64_t due_ns = monotonic_now_ns() + cycle_ns_;
   std::int64_t last_awake_ns = due_ns;
   while (!task_.finished()) {
-    MonotonicClock::wait_until(due_ns);
-    const std::int64_t awake_ns = MonotonicClock::now_ns();
+    wait_until_ns(due_ns);
+    const std::int64_t awake_ns = monotonic_now_ns();
     if (stop.load(std::memory_order_relaxed)) task_.request_stop();
     if (awake_ns - last_awake_ns > late_sync_ns) task_.distrust_samples();
     last_awake_ns = awake_ns;
@@ -83,17 +83,17 @@ void CycleRunner::run(const std::atomic<bool>& stop) noexcept {
     bool complete = arm_.receive(now_ns, feedback_);
     while (!complete && now_ns < awake_ns + deadline_ns) {
       arm_.wait(awake_ns + deadline_ns - now_ns);
-      now_ns = MonotonicClock::now_ns();
+      now_ns = monotonic_now_ns();
       complete = arm_.receive(now_ns, feedback_);
     }
     count_answers(complete);
 
     decide(now_ns);
-    const std::int64_t done_ns = MonotonicClock::now_ns();
+    const std::int64_t done_ns = monotonic_now_ns();
     statistics_.wakeup.add(awake_ns - due_ns);
     statistics_.compute.add(done_ns - now_ns);
     publish(awake_ns - due_ns, done_ns - now_ns);
-    due_ns = next_due(due_ns, MonotonicClock::now_ns());
+    due_ns = next_due(due_ns, monotonic_now_ns());
   }
 }
 

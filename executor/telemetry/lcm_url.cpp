@@ -3,7 +3,6 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -12,6 +11,7 @@
 #include <string_view>
 
 #include "shared/base/error.h"
+#include "shared/system/descriptor.h"
 
 namespace tenon::executor {
 namespace {
@@ -106,12 +106,9 @@ bool has_multicast_route(const std::string& url) {
   if (!parts || !is_multicast(*parts)) return true;
   const std::optional<sockaddr_in> group = group_of(parts->network);
   if (!group) return true;
-  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (probe < 0) return true;
-  const bool routed =
-      connect(probe, reinterpret_cast<const sockaddr*>(&*group), sizeof(*group)) == 0;
-  close(probe);
-  return routed;
+  const Descriptor probe(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  return !probe.is_open() ||
+         ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&*group), sizeof(*group)) == 0;
 }
 
 }  // namespace tenon::executor

@@ -1,6 +1,6 @@
 #include "executor/telemetry/recorder.h"
 
-#include "executor/loop/monotonic_clock.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::executor {
 namespace {
@@ -13,7 +13,7 @@ void Recorder::start() {
   thread_ = std::thread([this] {
     while (!stop_.load(std::memory_order_acquire)) {
       drain();
-      MonotonicClock::wait_until(MonotonicClock::now_ns() + kPeriod_ns);
+      wait_until_ns(monotonic_now_ns() + kPeriod_ns);
     }
   });
 }

@@ -4,12 +4,12 @@
 #include <lcm/lcm-cpp.hpp>
 #include <utility>
 
-#include "executor/loop/monotonic_clock.h"
 #include "executor/telemetry/lcm_url.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"
 #include "shared/base/error.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::executor {
 namespace {
@@ -66,7 +66,7 @@ void Telemetry::consume(const CycleRecord& record) {
 
 void Telemetry::publish_cycle(const CycleRecord& record) {
   tenon::cycle_state_t message{};
-  message.utime = MonotonicClock::wall_us();
+  message.utime = wall_clock_us();
   message.sequence = static_cast<std::int64_t>(record.sequence);
   message.monotonic_ns = record.time_ns;
   message.motion_ns = record.motion_ns;
@@ -99,7 +99,7 @@ void Telemetry::publish_step(const CycleRecord& record, std::size_t index) {
   const StepReport& report = steps_->report(index);
   const GuardedMove::Result& result = report.result;
   tenon::step_event_t message{};
-  message.utime = MonotonicClock::wall_us();
+  message.utime = wall_clock_us();
   message.sequence = static_cast<std::int64_t>(index);
   message.monotonic_ns = record.time_ns;
   message.step = static_cast<std::int16_t>(report.step);
@@ -122,7 +122,7 @@ void Telemetry::publish_step(const CycleRecord& record, std::size_t index) {
 
 void Telemetry::publish_summary(const RunResult& result, const CycleRecord& last) {
   tenon::run_summary_t message{};
-  message.utime = MonotonicClock::wall_us();
+  message.utime = wall_clock_us();
   message.sequence = static_cast<std::int64_t>(result.statistics.cycles);
   message.monotonic_ns = last.time_ns;
   message.plan = result.task;

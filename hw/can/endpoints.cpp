@@ -7,7 +7,6 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <termios.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <memory>
@@ -36,54 +35,52 @@ Addresses resolve(const std::string& host, std::uint16_t port, int flags) {
   return {found, &::freeaddrinfo};
 }
 
-void set_non_blocking(int descriptor) {
-  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
+void set_non_blocking(const Descriptor& descriptor) {
+  ::fcntl(descriptor.get(), F_SETFL, ::fcntl(descriptor.get(), F_GETFL) | O_NONBLOCK);
 }
 
 }  // namespace
 
-int connect_tcp(const std::string& host, std::uint16_t port) {
+Descriptor connect_tcp(const std::string& host, std::uint16_t port) {
   const Addresses addresses = resolve(host, port, 0);
-  const int descriptor = ::socket(addresses->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (descriptor < 0 || ::connect(descriptor, addresses->ai_addr, addresses->ai_addrlen) != 0) {
+  Descriptor socket(::socket(addresses->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (!socket.is_open() ||
+      ::connect(socket.get(), addresses->ai_addr, addresses->ai_addrlen) != 0) {
     const std::string reason = std::strerror(errno);
-    if (descriptor >= 0) ::close(descriptor);
     throw InputError("CAN bus slcan://" + name_of(host, port) + ": cannot connect: " + reason +
                      "; start the other end first (tenon-sim --can slcan-listen://" +
                      name_of(host, port) + ")");
   }
   const int on = 1;
-  ::setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
-  set_non_blocking(descriptor);
-  return descriptor;
+  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  set_non_blocking(socket);
+  return socket;
 }
 
-int listen_tcp(const std::string& host, std::uint16_t port) {
+Descriptor listen_tcp(const std::string& host, std::uint16_t port) {
   const Addresses addresses = resolve(host, port, AI_PASSIVE);
-  const int descriptor =
-      ::socket(addresses->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  Descriptor socket(::socket(addresses->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const int on = 1;
-  if (descriptor < 0 || ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on)) != 0 ||
-      ::bind(descriptor, addresses->ai_addr, addresses->ai_addrlen) != 0 ||
-      ::listen(descriptor, 4) != 0) {
+  if (!socket.is_open() ||
+      ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on)) != 0 ||
+      ::bind(socket.get(), addresses->ai_addr, addresses->ai_addrlen) != 0 ||
+      ::listen(socket.get(), 4) != 0) {
     const std::string reason = std::strerror(errno);
-    if (descriptor >= 0) ::close(descriptor);
     throw InputError("CAN bus slcan-listen://" + name_of(host, port) +
                      ": cannot listen: " + reason + "; take another port (0 takes a free one)");
   }
-  return descriptor;
+  return socket;
 }
 
-int open_serial(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) {
+Descriptor open_serial(const std::string& path) {
+  Descriptor device(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!device.is_open()) {
     throw InputError("CAN bus slcan:" + path + ": cannot open: " + std::strerror(errno) +
                      "; check that the adapter is plugged in and that you may use it (group "
                      "dialout)");
   }
   termios settings{};
-  if (::tcgetattr(descriptor, &settings) != 0) {
-    ::close(descriptor);
+  if (::tcgetattr(device.get(), &settings) != 0) {
     throw InputError("CAN bus slcan:" + path + ": is no serial device; give a tty or pty");
   }
   ::cfmakeraw(&settings);
@@ -91,8 +88,8 @@ int open_serial(const std::string& path) {
   settings.c_cc[VMIN] = 1;
   settings.c_cc[VTIME] = 0;
   ::cfsetspeed(&settings, B3000000);  // USB adapters ignore it
-  ::tcsetattr(descriptor, TCSANOW, &settings);
-  return descriptor;
+  ::tcsetattr(device.get(), TCSANOW, &settings);
+  return device;
 }
 
 }  // namespace tenon::hw

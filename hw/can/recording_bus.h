@@ -6,9 +6,9 @@
 
 #include <cstdint>
 
-#include "hw/can/monotonic_clock.h"
 #include "shared/base/spsc_ring.h"
 #include "shared/ports/can_bus.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::hw {
 

@@ -2,16 +2,17 @@
 
 #include <array>
 #include <string>
+#include <utility>
 
-#include "hw/can/monotonic_clock.h"
 #include "hw/can/poll_wait.h"
 #include "hw/can/slcan.h"
 #include "shared/base/error.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::hw {
 
-SlcanClient::SlcanClient(int descriptor, std::uint32_t bitrate_bps) {
-  stream_.adopt(descriptor);
+SlcanClient::SlcanClient(Descriptor descriptor, std::uint32_t bitrate_bps) {
+  stream_.adopt(std::move(descriptor));
   const auto digit = slcan_bitrate_digit(bitrate_bps);
   if (!digit) {
     throw InputError("slcan cannot set " + std::to_string(bitrate_bps) +

@@ -10,6 +10,7 @@
 
 #include "hw/can/slcan_stream.h"
 #include "shared/ports/can_bus.h"
+#include "shared/system/descriptor.h"
 
 namespace tenon::hw {
 
@@ -17,7 +18,7 @@ class SlcanClient : public CanBus {
  public:
   /// Opens the channel: C, S by bit rate, O. Throws InputError where slcan has no such bit rate.
   /// @param descriptor open and non-blocking, taken over (see hw/can/endpoints.h)
-  SlcanClient(int descriptor, std::uint32_t bitrate_bps);
+  SlcanClient(Descriptor descriptor, std::uint32_t bitrate_bps);
   ~SlcanClient() override;
 
   [[nodiscard]] SendResult send(const CanFrame& frame) noexcept override;

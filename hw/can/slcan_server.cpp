@@ -3,14 +3,14 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
-#include "hw/can/monotonic_clock.h"
 #include "hw/can/poll_wait.h"
 #include "hw/can/slcan.h"
 #include "shared/base/time_units.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::hw {
 namespace {
@@ -20,12 +20,9 @@ constexpr std::string_view kRefused = "\a";
 
 }  // namespace
 
-SlcanServer::SlcanServer(int listener) : listener_(listener) {}
+SlcanServer::SlcanServer(Descriptor listener) : listener_(std::move(listener)) {}
 
-SlcanServer::~SlcanServer() {
-  flush();
-  ::close(listener_);
-}
+SlcanServer::~SlcanServer() { flush(); }
 
 SendResult SlcanServer::send(const CanFrame& frame) noexcept {
   std::size_t failed = 0;
@@ -64,7 +61,7 @@ CanBusStatus SlcanServer::status() const noexcept {
 std::uint16_t SlcanServer::port() const noexcept {
   sockaddr_storage address{};
   socklen_t size = sizeof(address);
-  if (::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+  if (::getsockname(listener_.get(), reinterpret_cast<sockaddr*>(&address), &size) != 0) {
     return 0;
   }
   return address.ss_family == AF_INET6
@@ -121,7 +118,7 @@ bool SlcanServer::poll(std::int64_t at_most_ns) noexcept {
   for (std::size_t i = 0; i < kMaxClients; ++i) {
     wanted[i] = {clients_[i].stream.descriptor(), POLLIN, 0};  // negative ones are skipped
   }
-  wanted.back() = {listener_, POLLIN, 0};
+  wanted.back() = {listener_.get(), POLLIN, 0};
   if (!poll_wait(wanted, at_most_ns)) {
     return false;
   }
@@ -195,15 +192,15 @@ std::string_view SlcanServer::obey(Client& client, std::string_view command) noe
 }
 
 void SlcanServer::accept_client() noexcept {
-  const int descriptor = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-  if (descriptor < 0) {
+  Descriptor accepted(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (!accepted.is_open()) {
     return;
   }
   for (Client& client : clients_) {
     if (!client.stream.is_open() && !client.stream.has_input()) {
       const int on = 1;
-      ::setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
-      client.stream.adopt(descriptor);
+      ::setsockopt(accepted.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+      client.stream.adopt(std::move(accepted));
       client.channel = Client::Channel::kClosed;
       client.stamps = false;
       client.malformed_answered = client.stream.malformed();
@@ -211,7 +208,6 @@ void SlcanServer::accept_client() noexcept {
       return;
     }
   }
-  ::close(descriptor);
 }
 
 void SlcanServer::flush() noexcept {

@@ -27,6 +27,7 @@
 
 #include "hw/can/slcan_stream.h"
 #include "shared/ports/can_bus.h"
+#include "shared/system/descriptor.h"
 
 namespace tenon::hw {
 
@@ -35,7 +36,7 @@ class SlcanServer : public CanBus {
   static constexpr std::size_t kMaxClients = 8;
 
   /// @param listener a listening, non-blocking TCP socket, taken over (see hw/can/endpoints.h)
-  explicit SlcanServer(int listener);
+  explicit SlcanServer(Descriptor listener);
   ~SlcanServer() override;
 
   [[nodiscard]] SendResult send(const CanFrame& frame) noexcept override;
@@ -71,7 +72,7 @@ class SlcanServer : public CanBus {
   void accept_client() noexcept;
   void flush() noexcept;
 
-  int listener_;
+  Descriptor listener_;
   std::array<Client, kMaxClients> clients_;
   CanBusStatus status_;
 };

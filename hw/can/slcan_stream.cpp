@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tenon::hw {
 namespace {
@@ -14,22 +15,14 @@ bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK; }
 
 }  // namespace
 
-void SlcanStream::adopt(int descriptor) noexcept {
-  close();
-  descriptor_ = descriptor;
+void SlcanStream::adopt(Descriptor descriptor) noexcept {
+  descriptor_ = std::move(descriptor);
   int type = 0;
   socklen_t size = sizeof(type);
-  is_socket_ = ::getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) == 0;
+  is_socket_ = ::getsockopt(descriptor_.get(), SOL_SOCKET, SO_TYPE, &type, &size) == 0;
   parser_.reset();
   read_at_ = read_size_ = staged_size_ = 0;
   line_begun_ = blocked_ = false;
-}
-
-void SlcanStream::close() noexcept {
-  if (descriptor_ >= 0) {
-    ::close(descriptor_);
-    descriptor_ = -1;
-  }
 }
 
 bool SlcanStream::stage(std::string_view line) noexcept {
@@ -47,7 +40,7 @@ bool SlcanStream::stage(std::string_view line) noexcept {
 void SlcanStream::flush() noexcept {
   if (blocked_ && staged_size_ == 0) {
     // Nothing to try with: ask.
-    pollfd wanted{descriptor_, POLLOUT, 0};
+    pollfd wanted{descriptor_.get(), POLLOUT, 0};
     blocked_ = ::poll(&wanted, 1, 0) == 0;
     return;
   }
@@ -56,8 +49,8 @@ void SlcanStream::flush() noexcept {
   while (is_open() && sent < staged_size_) {
     const char* from = staged_.data() + sent;
     const std::size_t count = staged_size_ - sent;
-    const ssize_t written = is_socket_ ? ::send(descriptor_, from, count, MSG_NOSIGNAL)
-                                       : ::write(descriptor_, from, count);
+    const ssize_t written = is_socket_ ? ::send(descriptor_.get(), from, count, MSG_NOSIGNAL)
+                                       : ::write(descriptor_.get(), from, count);
     if (written > 0) {
       sent += static_cast<std::size_t>(written);
     } else if (written == 0 || would_block(errno)) {
@@ -91,7 +84,7 @@ void SlcanStream::fill() noexcept {
   if (!is_open() || has_input()) {
     return;
   }
-  const ssize_t count = ::read(descriptor_, read_.data(), read_.size());
+  const ssize_t count = ::read(descriptor_.get(), read_.data(), read_.size());
   if (count > 0) {
     read_at_ = 0;
     read_size_ = static_cast<std::size_t>(count);

@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "hw/can/slcan.h"
+#include "shared/system/descriptor.h"
 
 namespace tenon::hw {
 
@@ -22,13 +23,12 @@ class SlcanStream {
   SlcanStream() = default;
   SlcanStream(const SlcanStream&) = delete;
   SlcanStream& operator=(const SlcanStream&) = delete;
-  ~SlcanStream() { close(); }
 
   /// Takes over an open, non-blocking descriptor in place of the one before.
-  void adopt(int descriptor) noexcept;
-  void close() noexcept;
-  [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }
-  [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
+  void adopt(Descriptor descriptor) noexcept;
+  void close() noexcept { (void)descriptor_.close(); }
+  [[nodiscard]] bool is_open() const noexcept { return descriptor_.is_open(); }
+  [[nodiscard]] int descriptor() const noexcept { return descriptor_.get(); }
 
   /// Stages a line (with its CR). False: the descriptor takes nothing, or the stage is full.
   [[nodiscard]] bool stage(std::string_view line) noexcept;
@@ -48,7 +48,7 @@ class SlcanStream {
   void discard_staged(std::size_t sent) noexcept;
 
   static constexpr std::size_t kBuffer = 4096;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
   bool is_socket_ = false;
   SlcanParser parser_;
   std::array<char, kBuffer> read_{};

@@ -14,11 +14,11 @@
 #include <cstring>
 #include <optional>
 
-#include "hw/can/monotonic_clock.h"
 #include "hw/can/poll_wait.h"
 #include "hw/can/socketcan_errors.h"
 #include "hw/can/socketcan_link.h"
 #include "shared/base/error.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::hw {
 namespace {
@@ -75,9 +75,9 @@ SocketcanBus::SocketcanBus(const std::string& interface, std::uint32_t bitrate_b
                            std::uint32_t burst_frames)
     : interface_(interface),
       socket_(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)) {
-  if (socket_.get() < 0) {
+  if (!socket_.is_open()) {
     fail(interface,
-         "this kernel has no CAN sockets; load can-raw (modprobe can-raw), or use slcan:");
+           "this kernel has no CAN sockets; load can-raw (modprobe can-raw), or use slcan:");
   }
   const SocketcanLink link = read_link(interface);
   check_link(link, interface, bitrate_bps, burst_frames);

@@ -14,8 +14,8 @@
 #include <cstdint>
 #include <string>
 
-#include "hw/can/descriptor.h"
 #include "shared/ports/can_bus.h"
+#include "shared/system/descriptor.h"
 
 namespace tenon::hw {
 

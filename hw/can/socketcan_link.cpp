@@ -15,8 +15,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hw/can/descriptor.h"
 #include "shared/base/error.h"
+#include "shared/system/descriptor.h"
 
 namespace tenon::hw {
 namespace {

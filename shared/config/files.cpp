@@ -5,10 +5,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "shared/base/error.h"
 #include "shared/config/load.h"
+#include "shared/system/descriptor.h"
 
 namespace tenon {
 namespace {
@@ -19,40 +19,12 @@ constexpr std::size_t kFileMax_bytes = 16U << 20U;
   throw InputError(file.string() + ": cannot be " + what + ": " + std::strerror(error));
 }
 
-/// An open file that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  [[nodiscard]] int number() const { return number_; }
-  /// 0, or the error that was found only now.
-  [[nodiscard]] int close() { return ::close(std::exchange(number_, -1)) == 0 ? 0 : errno; }
-
- private:
-  int number_;
-};
-
-/// 0 or errno.
-int write_all(int descriptor, std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-  return 0;
-}
-
 /// A new file with these bytes on the disk. 0 or errno.
 int write_new(const std::filesystem::path& file, std::span<const std::uint8_t> bytes) {
   Descriptor descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (descriptor.number() < 0) return errno;
-  if (const int error = write_all(descriptor.number(), bytes)) return error;
-  if (::fsync(descriptor.number()) != 0) return errno;
+  if (!descriptor.is_open()) return errno;
+  if (const int error = write_all(descriptor, bytes)) return error;
+  if (::fsync(descriptor.get()) != 0) return errno;
   return descriptor.close();
 }
 
@@ -62,14 +34,14 @@ namespace config {
 
 std::string read_file(const std::filesystem::path& file) {
   const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  if (descriptor.number() < 0) fail(file, "read", errno);
+  if (!descriptor.is_open()) fail(file, "read", errno);
   std::string text;
   for (;;) {
     constexpr std::size_t kChunk_bytes = 64U << 10U;
     const std::size_t before = text.size();
     if (before > kFileMax_bytes) fail(file, "read", EFBIG);
     text.resize(before + kChunk_bytes);
-    const ssize_t got = ::read(descriptor.number(), text.data() + before, kChunk_bytes);
+    const ssize_t got = ::read(descriptor.get(), text.data() + before, kChunk_bytes);
     if (got < 0 && errno != EINTR) fail(file, "read", errno);
     text.resize(before + static_cast<std::size_t>(got < 0 ? 0 : got));
     if (got == 0) return text;
@@ -102,7 +74,7 @@ void write_file(const std::filesystem::path& file, std::span<const std::uint8_t>
   // The new name outlives a power cut only once its folder is on the disk too.
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (directory.number() >= 0) (void)::fsync(directory.number());
+  if (directory.is_open()) (void)::fsync(directory.get());
 }
 
 void write_file(const std::filesystem::path& file, const std::string& text) {

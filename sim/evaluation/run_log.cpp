@@ -58,42 +58,31 @@ std::vector<std::string> runs_of(const std::filesystem::path& file, const Lines&
 RunLog::RunLog(const std::filesystem::path& file, const std::string& identity)
     : file_(file),
       descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) fail(file, std::string("cannot be opened: ") + std::strerror(errno));
-  try {
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      fail(file, "another tenon-evaluate is writing to it; wait for it or give another file");
-    }
-    const std::string text = text_of(file);
-    const Lines lines = lines_of(text);
-    if (!lines.whole.empty()) found_ = runs_of(file, lines, identity);
-    was_torn_ = lines.bytes < text.size();
-    // A log that tore in its first line holds the beginning of that, and nothing else does.
-    if (lines.whole.empty() && !identity.starts_with(text)) {
-      fail(file, "is no run log; give another file or remove it");
-    }
-    if (was_torn_ && ::ftruncate(descriptor_, static_cast<off_t>(lines.bytes)) != 0) {
-      fail(file, std::string("cannot be cut: ") + std::strerror(errno));
-    }
-    if (lines.whole.empty()) append(identity);
-  } catch (...) {
-    ::close(descriptor_);
-    throw;
+  if (!descriptor_.is_open()) fail(file, std::string("cannot be opened: ") + std::strerror(errno));
+  if (::flock(descriptor_.get(), LOCK_EX | LOCK_NB) != 0) {
+    fail(file, "another tenon-evaluate is writing to it; wait for it or give another file");
   }
+  const std::string text = text_of(file);
+  const Lines lines = lines_of(text);
+  if (!lines.whole.empty()) found_ = runs_of(file, lines, identity);
+  was_torn_ = lines.bytes < text.size();
+  // A log that tore in its first line holds the beginning of that, and nothing else does.
+  if (lines.whole.empty() && !identity.starts_with(text)) {
+    fail(file, "is no run log; give another file or remove it");
+  }
+  if (was_torn_ && ::ftruncate(descriptor_.get(), static_cast<off_t>(lines.bytes)) != 0) {
+    fail(file, std::string("cannot be cut: ") + std::strerror(errno));
+  }
+  if (lines.whole.empty()) append(identity);
 }
-
-RunLog::~RunLog() { ::close(descriptor_); }
 
 void RunLog::append(const std::string& line) {
   const std::string text = line + "\n";
-  std::string_view rest = text;
-  while (!rest.empty()) {
-    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) break;
-    rest.remove_prefix(static_cast<std::size_t>(written));
-  }
-  if (!rest.empty() || ::fsync(descriptor_) != 0) {
-    throw std::runtime_error(file_.string() + ": cannot be written: " + std::strerror(errno));
+  int error =
+      write_all(descriptor_, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  if (error == 0 && ::fsync(descriptor_.get()) != 0) error = errno;
+  if (error != 0) {
+    throw std::runtime_error(file_.string() + ": cannot be written: " + std::strerror(error));
   }
 }
 

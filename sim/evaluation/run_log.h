@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "shared/system/descriptor.h"
+
 namespace tenon::sim {
 
 class RunLog {
@@ -16,9 +18,6 @@ class RunLog {
   /// @throws InputError where it cannot, the file is another evaluation's, or another process has
   /// it
   RunLog(const std::filesystem::path& file, const std::string& identity);
-  RunLog(const RunLog&) = delete;
-  RunLog& operator=(const RunLog&) = delete;
-  ~RunLog();
 
   /// What it held when it was opened, without the first line.
   [[nodiscard]] const std::vector<std::string>& found() const { return found_; }
@@ -29,7 +28,7 @@ class RunLog {
 
  private:
   std::filesystem::path file_;
-  int descriptor_;
+  Descriptor descriptor_;
   std::vector<std::string> found_;
   bool was_torn_ = false;
 };

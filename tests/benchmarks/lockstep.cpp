@@ -10,7 +10,6 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <ctime>
 #include <string>
@@ -20,6 +19,7 @@
 #include "executor/loop/cycle_runner.h"
 #include "hw/arm/canopen_arm.h"
 #include "hw/arm/describe_fault.h"
+#include "shared/system/monotonic_clock.h"
 #include "sim/cell/lockstep/virtual_link.h"
 #include "sim/cell/virtual_arm/virtual_cell.h"
 #include "tests/support/planned.h"
@@ -30,10 +30,6 @@ using namespace tenon;
 
 constexpr std::int64_t kCyclesMax = 200'000;
 constexpr const char* kStart = "1";
-
-std::int64_t clock_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
 
 /// Of this thread on a core, whoever else runs beside it.
 std::int64_t core_ns() {
@@ -57,7 +53,7 @@ class Shares {
     return work();
   }
   Part turn_to(Part part) {
-    const std::int64_t now_ns = clock_ns();
+    const std::int64_t now_ns = monotonic_now_ns();
     spent_ns_[current_] += now_ns - since_ns_;
     since_ns_ = now_ns;
     return std::exchange(current_, part);
@@ -67,7 +63,7 @@ class Shares {
  private:
   std::array<std::int64_t, kParts> spent_ns_{};
   Part current_ = kCell;
-  std::int64_t since_ns_ = clock_ns();
+  std::int64_t since_ns_ = monotonic_now_ns();
 };
 
 class TimedBus final : public CanBus {
@@ -168,7 +164,7 @@ std::string run_once(const Cell& cell, const Plan& plan, Spent& spent) {
   sim::VirtualCell::Options options;
   options.start = kStart;
   options.offset.head<2>() << 0.01, -0.01;
-  options.stopwatch_ns = clock_ns;
+  options.stopwatch_ns = monotonic_now_ns;
   sim::VirtualCell virtual_cell(cell, tests::box_task(), options);
   sim::Lockstep time(arm, virtual_cell, link,
                      {.cycle_ns = std::int64_t{1000} * cell.robot.cycle_us});

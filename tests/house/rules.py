@@ -22,6 +22,9 @@ TOP_LEVEL = {
     "build", "compile_commands.json",
 }
 
+# Where shared/ may have the operating system.
+SYSTEM = ("shared/system/", "shared/config/")
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 IS_MAIN = re.compile(r"^[a-z]+/main_[a-z_]+\.cpp$")
 
@@ -58,7 +61,7 @@ RESERVED = [
      re.compile(r"^(thread|mutex|shared_mutex|condition_variable|future|semaphore|latch|barrier|"
                 r"stop_token|chrono|ctime|time\.h|pthread\.h|sched\.h|signal\.h|csignal|unistd\.h|"
                 r"fcntl\.h|poll\.h|netdb\.h|termios\.h|pty\.h|(sys|net|netinet|arpa|linux)/.*)$"),
-     lambda path, main: not path.startswith("shared/") or path.startswith("shared/config/")),
+     lambda path, main: not path.startswith("shared/") or path.startswith(SYSTEM)),
 ]
 
 # (what, pattern in the code, who may have it)
@@ -66,8 +69,7 @@ CODE = [
     ("reads a clock or sleeps; time is an argument",
      re.compile(r"_clock\s*::\s*now\b|\b(clock_gettime|gettimeofday|timespec_get|clock_nanosleep|"
                 r"nanosleep|usleep|sleep_for|sleep_until)\b|\bstd::time\s*\(|\btime\s*\(\s*(nullptr|NULL|0)"),
-     lambda path, main: main or path.startswith("tests/")
-     or "clock" in pathlib.PurePath(path).name),
+     lambda path, main: path.startswith(("shared/system/", "tests/"))),
     ("draws numbers that no seed repeats", re.compile(r"\brandom_device\b|\bs?rand\s*\("),
      lambda path, main: main),
     ("skips a test; what a test needs is set up, or it fails", re.compile(r"\bGTEST_SKIP\b"),
@@ -230,7 +232,10 @@ SELF_TEST = [
     ("planner/n.h", "#pragma once\n#include <iostream>\n", "has no place in a header"),
     ("hw/o.cpp", "auto t = std::chrono::steady_clock::now();\n", "reads a clock"),
     ("hw/p.cpp", '// steady_clock::now()\nconst char* s = "clock_gettime"; int n = 1\'000;\n', None),
-    ("executor/real_time_clock.cpp", "auto t = std::chrono::steady_clock::now();\n", None),
+    ("shared/system/clock.cpp", "#include <time.h>\nint i = clock_gettime(1, nullptr);\n", None),
+    ("hw/clock.cpp", "auto t = std::chrono::steady_clock::now();\n", "reads a clock"),
+    ("executor/main_exec.cpp", "auto t = std::chrono::steady_clock::now();\n", "reads a clock"),
+    ("shared/system/threads.cpp", "#include <thread>\n", None),
     ("sim/q.cpp", "std::random_device seed;\n", "no seed repeats"),
     ("sim/r.cpp", "int x;\n" * 401, "longer than 400 lines"),
     ("sim/r2.cpp", "namespace a {\nint f(int x) {\n" + "  ++x;\n" * 59 + "}\n}\n", "a function of 61 lines"),

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstring>
@@ -125,21 +124,19 @@ TEST(SlcanOverTcp, ReaderThatSleepsCostsFramesNotTime) {
 /// A bare TCP connection, as a terminal makes it.
 class Terminal {
  public:
-  explicit Terminal(std::uint16_t port) : descriptor_(connect_tcp("127.0.0.1", port)) {}
-  ~Terminal() { ::close(descriptor_); }
-  Terminal(const Terminal&) = delete;
-  Terminal& operator=(const Terminal&) = delete;
+  explicit Terminal(std::uint16_t port) : socket_(connect_tcp("127.0.0.1", port)) {}
 
   /// Sends a text and reads until `expected` characters are there, for a bounded time.
   std::string exchange(CanBus& server, const std::string& text, std::size_t expected) {
-    EXPECT_EQ(::send(descriptor_, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
+    EXPECT_EQ(::send(socket_.get(), text.data(), text.size(), 0),
+              static_cast<ssize_t>(text.size()));
     std::string answer;
     for (int i = 0; i < 20 && (i == 0 || answer.size() < expected); ++i) {
       server.wait(1'000'000);
       ReceivedFrame received;
       while (server.receive(received)) frames.push_back(received.frame);
       std::array<char, 256> buffer{};
-      const ssize_t count = ::recv(descriptor_, buffer.data(), buffer.size(), MSG_DONTWAIT);
+      const ssize_t count = ::recv(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
       if (count > 0) answer.append(buffer.data(), static_cast<std::size_t>(count));
     }
     return answer;
@@ -148,13 +145,13 @@ class Terminal {
   /// Reads whatever is on the way.
   void discard(CanBus& server) {
     std::vector<char> buffer(1 << 16);
-    while (::recv(descriptor_, buffer.data(), buffer.size(), MSG_DONTWAIT) > 0) server.wait(0);
+    while (::recv(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT) > 0) server.wait(0);
   }
 
   std::vector<CanFrame> frames;
 
  private:
-  int descriptor_;
+  Descriptor socket_;
 };
 
 TEST(SlcanServer, AnswersEachLineAsAnAdapterDoes) {

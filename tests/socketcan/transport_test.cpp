@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "hw/can/monotonic_clock.h"
 #include "hw/can/socketcan_bus.h"
+#include "shared/system/monotonic_clock.h"
 #include "tests/socketcan/interfaces.h"
 
 namespace tenon::socketcan {
@@ -48,14 +48,14 @@ TEST_F(SocketcanTransport, EveryKindOfFrameArrivesWholeInOrderAndNotAtItsSender)
 TEST_F(SocketcanTransport, ReceiveTimesAreMonotonicTimeAndNeverStepBack) {
   // Between sending and reading, but for the conversion from the kernel's clock.
   constexpr std::int64_t kConversion_ns = 50'000'000;
-  std::int64_t previous_ns = hw::monotonic_now_ns() - kConversion_ns;
+  std::int64_t previous_ns = monotonic_now_ns() - kConversion_ns;
   for (unsigned i = 0; i < 200; ++i) ASSERT_EQ(a.send(numbered(i)), SendResult::kSent);
   for (unsigned i = 0; i < 200; ++i) {
     ASSERT_TRUE(receive_soon(b, received));
     EXPECT_GE(received.time_ns, previous_ns);
     previous_ns = received.time_ns;
   }
-  EXPECT_LE(previous_ns, hw::monotonic_now_ns() + kConversion_ns);
+  EXPECT_LE(previous_ns, monotonic_now_ns() + kConversion_ns);
 }
 
 TEST_F(SocketcanTransport, AFrameThatNobodyReadsInTimeIsCountedAsAnOverrun) {

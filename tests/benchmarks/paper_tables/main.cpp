@@ -9,7 +9,6 @@
 
 #include <getopt.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -17,6 +16,7 @@
 #include "planner/planner.h"
 #include "shared/base/error.h"
 #include "shared/config/load.h"
+#include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
 #include "sim/physics/rollout/ode_rollout.h"
 #include "tests/benchmarks/paper_tables/figures.h"
@@ -104,9 +104,7 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now_s() { return 1e-9 * static_cast<double>(monotonic_now_ns()); }
 
 /// Plans every row and prints it as it comes.
 OurTable planned(const PaperTable& paper, const std::string& name,
