@@ -17,8 +17,8 @@ class RolloutPool {
   /// @param prototype cloned `threads` times (at least once)
   RolloutPool(const Rollout& prototype, std::size_t threads);
 
-  /// Calls job(rollout, i) once for each i < jobs. An exception in a job is thrown here, that of
-  /// the lowest i where there are several.
+  /// Calls job(rollout, i) once for each i < jobs (shared/system/fan_out.h). An exception in a job
+  /// is thrown here, that of the lowest i where there are several.
   void run(std::size_t jobs, const std::function<void(Rollout&, std::size_t)>& job);
 
   /// For questions outside of run().

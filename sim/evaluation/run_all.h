@@ -22,7 +22,7 @@ struct Job {
 
 /// Starts the jobs in their order, each on the next free thread. `run` is called on any thread and
 /// makes what it needs there; `ended` is called by one thread at a time, in the order in which runs
-/// end. Rethrows what either threw, after the runs in flight.
+/// end. Rethrows what either threw, after the runs in flight (shared/system/fan_out.h).
 void run_all(const std::vector<Job>& jobs, std::size_t threads,
              const std::function<Run(const Job&)>& run,
              const std::function<void(const Job&, Run)>& ended);

@@ -5,17 +5,16 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "executor/dry_run/plan_check.h"
 #include "shared/motion/stiff_contact.h"
+#include "shared/system/fan_out.h"
 #include "tests/support/planned.h"
 #include "tests/support/whole_run.h"
 
@@ -146,14 +145,7 @@ std::vector<Contacts> draw_contacts(std::size_t count) {
 }
 
 void expect_below_the_formula(std::vector<Contacts> all) {
-  std::atomic<std::size_t> next = 0;
-  std::array<std::thread, 2> threads;
-  for (std::thread& thread : threads) {
-    thread = std::thread([&] {
-      for (std::size_t i = next++; i < all.size(); i = next++) touch(all[i], i);
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  fan_out(all.size(), 2, [&](std::size_t i, std::size_t /*worker*/) { touch(all[i], i); });
 
   std::size_t touches = 0;
   double most = 0.0;

@@ -4,19 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "executor/identification/identify_contact_motion.h"
 #include "executor/identification/identify_payload_motion.h"
 #include "executor/loop/cycle_runner.h"
 #include "hw/arm/canopen_arm.h"
+#include "shared/system/fan_out.h"
 #include "sim/cell/lockstep/lockstep.h"
 #include "sim/cell/lockstep/virtual_link.h"
 #include "sim/cell/virtual_arm/virtual_cell.h"
@@ -92,14 +90,7 @@ void expect_found(int contacts) {
     all.push_back(
         {5e3 * std::pow(20.0, uniform(0.0, 1.0)), std::max(protocol_s, uniform(0.0, 0.020)), {}});
   }
-  std::atomic<std::size_t> next = 0;
-  std::array<std::thread, 2> threads;
-  for (std::thread& thread : threads) {
-    thread = std::thread([&] {
-      for (std::size_t i = next++; i < all.size(); i = next++) identify(all[i], i);
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  fan_out(all.size(), 2, [&](std::size_t i, std::size_t /*worker*/) { identify(all[i], i); });
   double worst_stiffness = 0.0;
   double worst_lag_s = 0.0;
   for (const Drawn& drawn : all) {

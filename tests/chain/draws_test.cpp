@@ -3,18 +3,16 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "planner/cell_fit.h"
 #include "planner/planner.h"
+#include "shared/system/fan_out.h"
 #include "sim/physics/rollout/ode_rollout.h"
 #include "tests/support/planned.h"
 #include "tests/support/whole_run.h"
@@ -84,15 +82,9 @@ std::vector<Execution> execute_all(const Plans& plans, std::size_t draws) {
       runs.push_back(run);
     }
   }
-  std::atomic<std::size_t> next = 0;
-  std::array<std::thread, 2> threads;
-  for (std::thread& thread : threads) {
-    thread = std::thread([&] {
-      for (std::size_t i = next++; i < runs.size(); i = next++)
-        execute(runs[i], plans.at(runs[i].start));
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  fan_out(runs.size(), 2, [&](std::size_t i, std::size_t /*worker*/) {
+    execute(runs[i], plans.at(runs[i].start));
+  });
   return runs;
 }
 

@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "shared/config/load.h"
+#include "shared/system/fan_out.h"
 #include "sim/cell/virtual_arm/world_draw.h"
 #include "tests/support/places.h"
 #include "tests/support/planned.h"
@@ -33,16 +32,8 @@ std::string truth_of(std::uint64_t seed) {
 
 std::vector<std::string> truths_on(std::size_t thread_count) {
   std::vector<std::string> truths(kSeeds);
-  std::atomic<std::uint64_t> next = 0;
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < thread_count; ++i) {
-    threads.emplace_back([&] {
-      for (std::uint64_t seed = next++; seed < kSeeds; seed = next++) {
-        truths[seed] = truth_of(seed + 1);
-      }
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  fan_out(kSeeds, thread_count,
+          [&](std::size_t i, std::size_t /*worker*/) { truths[i] = truth_of(i + 1); });
   return truths;
 }
 
