@@ -44,7 +44,7 @@ void complete(CanBus& bus, SdoClient& client, const CanFrame& first) {
       (void)bus.send(*abort);
     }
   }
-  bus.wait(0);
+  bus.flush();
 }
 
 std::optional<std::uint32_t> read_number(CanBus& bus, const canopen::SdoAddress& address,

@@ -50,7 +50,7 @@ void CanopenArm::run_bring_up(std::int64_t now_ns) {
     bring_up_.update(now_ns, bus_);
   }
   bring_up_.update(now_ns, bus_);
-  bus_.wait(0);  // what has been sent leaves now
+  bus_.flush();
   if (bring_up_.state() == BringUp::State::kFailed) {
     supervision_.raise(bring_up_.fault());
   }
@@ -91,7 +91,7 @@ void CanopenArm::command(std::int64_t now_ns, ArmRequest request,
   const bool follow = was_enabled && state() == ArmState::kEnabled;
   output_.send_setpoints(supervision_.granted(request), follow, position);
   output_.send_heartbeat(now_ns);
-  bus_.wait(0);  // what has been sent leaves now
+  bus_.flush();
 }
 
 }  // namespace tenon::hw

@@ -37,6 +37,7 @@ class RecordingBus : public CanBus {
     }
     return there;
   }
+  void flush() noexcept override { bus_.flush(); }
   void wait(std::int64_t at_most_ns) noexcept override { bus_.wait(at_most_ns); }
   [[nodiscard]] CanBusStatus status() const noexcept override { return bus_.status(); }
 

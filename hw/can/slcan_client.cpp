@@ -67,7 +67,7 @@ bool SlcanClient::receive(ReceivedFrame& received) noexcept {
 }
 
 void SlcanClient::wait(std::int64_t at_most_ns) noexcept {
-  stream_.flush();
+  flush();
   if (stream_.has_input() || at_most_ns <= 0) {
     return;
   }

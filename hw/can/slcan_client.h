@@ -1,8 +1,8 @@
 #pragma once
 // A CAN bus behind an slcan adapter: a serial device or pty, or a TCP connection (the virtual arm).
 //
-// What send() takes leaves at the next receive() or wait(), so that the frames of one cycle cost
-// one system call; wait(0) is a flush. Neither blocks: where the other end reads too slowly, frames
+// What send() takes leaves at the next flush(), receive() or wait(), so that the frames of one
+// cycle cost one system call. Sending never blocks: where the other end reads too slowly, frames
 // are dropped and reported as kQueueFull; a closed connection is kDown and status().up = false, for
 // good. One thread. Owns the descriptor.
 
@@ -23,6 +23,7 @@ class SlcanClient : public CanBus {
 
   [[nodiscard]] SendResult send(const CanFrame& frame) noexcept override;
   [[nodiscard]] bool receive(ReceivedFrame& received) noexcept override;
+  void flush() noexcept override { stream_.flush(); }
   void wait(std::int64_t at_most_ns) noexcept override;
   [[nodiscard]] CanBusStatus status() const noexcept override;
 

@@ -15,10 +15,10 @@
 //   | V N                 | V1013 CR, NTENO CR                                                  |
 //   | anything else       | BEL                                                                 |
 //
-// What send() takes leaves at the next receive() or wait(). Nothing blocks: a client that reads too
-// slowly loses frames, which are counted (kQueueFull where no client takes them); one that goes
-// away is forgotten. Without a client frames go nowhere, as on a bus without a listener. One
-// thread. Owns its sockets.
+// What send() takes leaves at the next flush(), receive() or wait(). Nothing blocks: a client that
+// reads too slowly loses frames, which are counted (kQueueFull where no client takes them); one
+// that goes away is forgotten. Without a client frames go nowhere, as on a bus without a listener.
+// One thread. Owns its sockets.
 
 #include <array>
 #include <cstddef>
@@ -31,7 +31,7 @@
 
 namespace tenon::hw {
 
-class SlcanServer : public CanBus {
+class SlcanServer final : public CanBus {
  public:
   static constexpr std::size_t kMaxClients = 8;
 
@@ -41,6 +41,7 @@ class SlcanServer : public CanBus {
 
   [[nodiscard]] SendResult send(const CanFrame& frame) noexcept override;
   [[nodiscard]] bool receive(ReceivedFrame& received) noexcept override;
+  void flush() noexcept override;
   void wait(std::int64_t at_most_ns) noexcept override;
   [[nodiscard]] CanBusStatus status() const noexcept override;
 
@@ -70,7 +71,6 @@ class SlcanServer : public CanBus {
   void refuse_malformed(Client& client) noexcept;
   [[nodiscard]] static std::string_view obey(Client& client, std::string_view command) noexcept;
   void accept_client() noexcept;
-  void flush() noexcept;
 
   Descriptor listener_;
   std::array<Client, kMaxClients> clients_;

@@ -9,7 +9,7 @@
 // that the kernel dropped because nobody read them (SO_RXQ_OVFL) are overruns, counted when the
 // next one comes.
 //
-// One thread. Owns its socket. send, receive, wait neither allocate nor throw.
+// One thread. Owns its socket. send, receive, flush, wait neither allocate nor throw.
 
 #include <cstdint>
 #include <string>
@@ -28,6 +28,7 @@ class SocketcanBus : public CanBus {
 
   [[nodiscard]] SendResult send(const CanFrame& frame) noexcept override;
   [[nodiscard]] bool receive(ReceivedFrame& received) noexcept override;
+  void flush() noexcept override {}  // the kernel has it already
   void wait(std::int64_t at_most_ns) noexcept override;
   [[nodiscard]] CanBusStatus status() const noexcept override { return status_; }
 

@@ -40,7 +40,7 @@ enum class SendResult : std::uint8_t {
   kDown = 2,       ///< the bus is gone
 };
 
-/// Real-time: send, receive and wait neither allocate nor throw. One thread at a time.
+/// Real-time: send, receive, flush and wait neither allocate nor throw. One thread at a time.
 class CanBus {
  public:
   CanBus() = default;
@@ -51,7 +51,10 @@ class CanBus {
   [[nodiscard]] virtual SendResult send(const CanFrame& frame) noexcept = 0;
   /// The next frame of another node, without waiting. False: none now.
   [[nodiscard]] virtual bool receive(ReceivedFrame& received) noexcept = 0;
-  /// Waits until a frame may be there or the time has passed. In lockstep it returns at once.
+  /// What was sent leaves now, where a transport gathers frames. Waits for nothing.
+  virtual void flush() noexcept = 0;
+  /// Flushes, and waits until a frame may be there or the time has passed. In lockstep it returns
+  /// at once.
   virtual void wait(std::int64_t at_most_ns) noexcept = 0;
   [[nodiscard]] virtual CanBusStatus status() const noexcept = 0;
 };

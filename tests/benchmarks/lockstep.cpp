@@ -75,6 +75,7 @@ class TimedBus final : public CanBus {
   bool receive(ReceivedFrame& received) noexcept override {
     return shares_.of(kBus, [&] { return bus_.receive(received); });
   }
+  void flush() noexcept override { bus_.flush(); }
   void wait(std::int64_t at_most_ns) noexcept override { bus_.wait(at_most_ns); }
   [[nodiscard]] CanBusStatus status() const noexcept override { return bus_.status(); }
 

@@ -35,7 +35,7 @@ TEST(SlcanOverSerial, OpensTheChannelAndExchangesFramesOverAPty) {
   {
     const auto bus = open_bus(std::string("slcan:") + ::ptsname(adapter), 500'000);
     EXPECT_EQ(bus->send({0x201, false, false, 2, {0x0F, 0x00}}), SendResult::kSent);
-    bus->wait(0);
+    bus->flush();
     // A pty hands over what was written in pieces of its own choosing.
     const std::string expected = "C\rS6\rO\rt20120F00\r";
     std::array<char, 256> buffer{};
@@ -171,6 +171,19 @@ TEST(RecordingBus, EveryFrameThatPassedIsInTheLog) {
   EXPECT_EQ(text.str(), "(2.000000) can0 201#01\n(3.000000) can0 190#02\n");
   ::unlink(file.c_str());
   EXPECT_THROW(CandumpLog("/nowhere/run.log"), InputError);
+}
+
+TEST(RecordingBus, AFlushReachesTheBusBelow) {
+  Loopback loopback;
+  const auto client = loopback.connect();
+  const auto ring = std::make_unique<CanRecordRing>();
+  RecordingBus recording(*client, *ring);
+  EXPECT_EQ(recording.send(frame_of(0x201, 7)), SendResult::kSent);
+  ReceivedFrame received;
+  EXPECT_FALSE(loopback.server->receive(received)) << "the client gathers what a cycle sends";
+  recording.flush();
+  ASSERT_TRUE(receive_soon(*loopback.server, received));
+  EXPECT_EQ(received.frame, frame_of(0x201, 7));
 }
 
 }  // namespace

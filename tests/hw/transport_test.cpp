@@ -22,12 +22,12 @@ TEST(SlcanOverTcp, FramesGoBothWays) {
   const auto client = loopback.connect();
   ReceivedFrame received;
   EXPECT_EQ(client->send(frame_of(0x201, 7)), SendResult::kSent);
-  client->wait(0);
+  client->flush();
   ASSERT_TRUE(receive_soon(*loopback.server, received));
   EXPECT_EQ(received.frame, frame_of(0x201, 7));
   EXPECT_GT(received.time_ns, 0);
   EXPECT_EQ(loopback.server->send(frame_of(0x190, 8)), SendResult::kSent);
-  loopback.server->wait(0);
+  loopback.server->flush();
   ASSERT_TRUE(receive_soon(*client, received));
   EXPECT_EQ(received.frame, frame_of(0x190, 8));
   EXPECT_EQ(client->status().malformed, 0u);
@@ -38,10 +38,10 @@ TEST(SlcanOverTcp, FramesOfAClientReachTheOtherClients) {
   const auto first = loopback.connect();
   const auto second = loopback.connect();
   EXPECT_EQ(first->send(frame_of(0x123, 1)), SendResult::kSent);
-  first->wait(0);
+  first->flush();
   ReceivedFrame received;
   ASSERT_TRUE(receive_soon(*loopback.server, received));
-  loopback.server->wait(0);
+  loopback.server->flush();
   ASSERT_TRUE(receive_soon(*second, received));
   EXPECT_EQ(received.frame, frame_of(0x123, 1));
   EXPECT_FALSE(first->receive(received));
@@ -56,7 +56,7 @@ TEST(SlcanOverTcp, ThousandsOfFramesArriveWholeAndInOrder) {
     ASSERT_EQ(client->send({i & 0x7FF, false, false, 8, {1, 2, 3, 4, 5, 6, 7, 8}}),
               SendResult::kSent);
     if (i % 10 != 9) continue;
-    client->wait(0);
+    client->flush();
     while (expected <= i) {
       ASSERT_TRUE(receive_soon(*loopback.server, received));
       ASSERT_EQ(received.frame.id, expected++ & 0x7FF);
@@ -101,7 +101,7 @@ TEST(SlcanOverTcp, ReaderThatSleepsCostsFramesNotTime) {
   std::uint64_t sent = 0;
   for (; sent < 10'000'000 && result == SendResult::kSent; ++sent) {
     result = loopback.server->send(frame_of(0x190, static_cast<std::uint8_t>(sent)));
-    if (sent % 16 == 0) loopback.server->wait(0);
+    if (sent % 16 == 0) loopback.server->flush();
   }
   EXPECT_EQ(result, SendResult::kQueueFull);
   EXPECT_GT(loopback.server->status().send_failures, 0u);
@@ -145,7 +145,7 @@ class Terminal {
   /// Reads whatever is on the way.
   void discard(CanBus& server) {
     std::vector<char> buffer(1 << 16);
-    while (::recv(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT) > 0) server.wait(0);
+    while (::recv(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT) > 0) server.flush();
   }
 
   std::vector<CanFrame> frames;
@@ -205,11 +205,11 @@ TEST(SlcanServer, RubbishFromOneClientNeverDisturbsTheOthers) {
     for (int k = 0; k < 200; ++k) rubbish += static_cast<char>(random());
     (void)vandal.exchange(*loopback.server, rubbish, 0);
     ASSERT_EQ(client->send(frame_of(0x123, i)), SendResult::kSent);
-    client->wait(0);
+    client->flush();
     ASSERT_TRUE(receive_soon(*loopback.server, received));
     ASSERT_EQ(received.frame, frame_of(0x123, i));
     ASSERT_EQ(loopback.server->send(frame_of(0x190, i)), SendResult::kSent);
-    loopback.server->wait(0);
+    loopback.server->flush();
     ASSERT_TRUE(receive_soon(*client, received));
     ASSERT_EQ(received.frame, frame_of(0x190, i));
   }
@@ -230,7 +230,7 @@ TEST(SlcanServer, ASlowReaderLosesCountedFramesAndTheOthersNone) {
     for (int i = 0; i < 100; ++i) {
       ASSERT_EQ(loopback.server->send(frame), SendResult::kSent) << "the client takes it";
     }
-    loopback.server->wait(0);
+    loopback.server->flush();
     for (int i = 0; i < 100; ++i) ASSERT_TRUE(receive_soon(*client, received));
     ASSERT_EQ(received.frame, frame);
   }

@@ -13,6 +13,7 @@
 #include "sim/cell/faults/fault_spec.h"
 #include "sim/cell/faults/faulty_bus.h"
 #include "sim/cell/faults/frame_sender.h"
+#include "tests/sim/literal_client.h"
 #include "tests/support/refusal.h"
 
 namespace tenon::sim {
@@ -147,6 +148,13 @@ TEST(FaultyBus, WithoutFaultsFramesPassBothWays) {
   EXPECT_EQ(line.master.send(frame_of(0x203)), SendResult::kSent);
   EXPECT_EQ(Decorated::drain(line.master), std::vector<CanFrame>{frame_of(0x183)});
   EXPECT_EQ(Decorated::drain(line.faulty), std::vector<CanFrame>{frame_of(0x203)});
+}
+
+TEST(FaultyBus, AFlushReachesTheBusBelow) {
+  LiteralBus bus;
+  FaultyBus faulty(bus, {}, 127, 0);
+  faulty.flush();
+  EXPECT_EQ(bus.flushes, 1);
 }
 
 TEST(FaultyBus, DropsThatNodesFramesForAsLongAsItSays) {

@@ -25,11 +25,13 @@ class LiteralBus final : public CanBus {
     to_devices.pop_front();
     return true;
   }
+  void flush() noexcept override { ++flushes; }
   void wait(std::int64_t /*at_most_ns*/) noexcept override {}
   [[nodiscard]] CanBusStatus status() const noexcept override { return {}; }
 
   std::deque<CanFrame> to_devices;
   std::vector<CanFrame> from_devices;
+  int flushes = 0;
 };
 
 [[nodiscard]] inline CanFrame frame_of(std::uint32_t id, std::initializer_list<int> bytes) {

@@ -8,6 +8,7 @@
 #include "sim/cell/bus/virtual_bus.h"
 #include "sim/cell/lockstep/foreign_link.h"
 #include "sim/cell/lockstep/virtual_link.h"
+#include "tests/sim/literal_client.h"
 
 namespace tenon::sim {
 namespace {
@@ -54,6 +55,18 @@ TEST(ForeignLink, FramesArriveWithoutTimeAndTimeGoesOnWhenTheBusIsQuiet) {
   EXPECT_TRUE(link.at_master());
   EXPECT_EQ(link.advance(kCycle_ns), kCycle_ns);
   EXPECT_EQ(link.lost(), 0U);
+}
+
+TEST(ForeignLink, WhatASideSentLeavesWhenItIsFlushedAndWhenTimeGoesOn) {
+  LiteralBus first;
+  LiteralBus second;
+  ForeignLink link(first, second, 1'000'000);
+  link.master().flush();
+  EXPECT_EQ(first.flushes, 1);
+  EXPECT_EQ(second.flushes, 0);
+  (void)link.advance(kCycle_ns);
+  EXPECT_EQ(first.flushes, 2);
+  EXPECT_EQ(second.flushes, 1);
 }
 
 TEST(ForeignLink, AFrameThatDoesNotComeIsLostAndNoHang) {

@@ -60,6 +60,7 @@ class VirtualBus::End final : public CanBus {
     ++status_.received;
     return true;
   }
+  void flush() noexcept override {}
   void wait(std::int64_t /*at_most_ns*/) noexcept override {}
   CanBusStatus status() const noexcept override {
     CanBusStatus status = status_;

@@ -27,6 +27,7 @@ class FaultyBus final : public CanBus {
 
   [[nodiscard]] SendResult send(const CanFrame& frame) noexcept override;
   [[nodiscard]] bool receive(ReceivedFrame& received) noexcept override;
+  void flush() noexcept override { bus_.flush(); }
   void wait(std::int64_t at_most_ns) noexcept override { bus_.wait(at_most_ns); }
   [[nodiscard]] CanBusStatus status() const noexcept override;
 

@@ -41,7 +41,7 @@ bool ForeignLink::Side::receive(ReceivedFrame& received) noexcept {
 }
 
 bool ForeignLink::Side::take(std::int64_t now_ns) {
-  end.wait(0);  // what it sent leaves
+  end.flush();
   const std::size_t before = arrived.size();
   for (ReceivedFrame received; end.receive(received);) {
     arrived.push_back({received.frame, now_ns});

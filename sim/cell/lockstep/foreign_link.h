@@ -35,7 +35,8 @@ class ForeignLink final : public Link {
     Side(CanBus& end_in, Side& other_in) : end(end_in), other(other_in) {}
     SendResult send(const CanFrame& frame) noexcept override;
     bool receive(ReceivedFrame& received) noexcept override;
-    void wait(std::int64_t /*at_most_ns*/) noexcept override { end.wait(0); }
+    void flush() noexcept override { end.flush(); }
+    void wait(std::int64_t /*at_most_ns*/) noexcept override { end.flush(); }
     CanBusStatus status() const noexcept override { return end.status(); }
     /// Takes in what there is; false: nothing.
     bool take(std::int64_t now_ns);
