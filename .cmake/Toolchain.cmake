@@ -16,7 +16,8 @@ endif()
 
 # Contracting a*b+c into one rounding would make a result depend on the machine that compiled it.
 add_compile_options(-ffp-contract=off)
-add_compile_options(-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wswitch-enum)
+# -Wformat=2: a pattern that is not written out where it is used cannot be checked, and is refused.
+add_compile_options(-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wswitch-enum -Wformat=2)
 if(TENON_WERROR)
   add_compile_options(-Werror)
 endif()

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "shared/base/error.h"
 #include "shared/base/text.h"
@@ -38,10 +39,7 @@ class Fitting {
   }
 
  private:
-  template <typename... Values>
-  void note(const char* pattern, Values... values) {
-    fit_.changes.push_back(format(pattern, values...));
-  }
+  void note(std::string change) { fit_.changes.push_back(std::move(change)); }
 
   [[noreturn]] void refuse(const std::string& why) const {
     throw InputError("cell '" + cell_.name + "' cannot execute task '" + fit_.task.name +
@@ -52,8 +50,8 @@ class Fitting {
     std::uint32_t& debounce_us = fit_.task.motion.thresholds.debounce_us;
     const std::uint32_t least_us = kDebounceCycles * cell_.robot.cycle_us;
     if (debounce_us >= least_us) return;
-    note("debounce %g -> %g ms: at least two cycles of %g ms", 1e-3 * debounce_us, 1e-3 * least_us,
-         1e3 * loop_.cycle_s);
+    note(format("debounce %g -> %g ms: at least two cycles of %g ms", 1e-3 * debounce_us,
+                1e-3 * least_us, 1e3 * loop_.cycle_s));
     debounce_us = least_us;
   }
 
@@ -63,15 +61,16 @@ class Fitting {
     const double noise_N = cell_.robot.sensor.force_noise_N;
     if (t.force_on_N < kNoiseDeviations * noise_N) {
       const double raised_N = kNoiseMargin * kNoiseDeviations * noise_N;
-      note("force_on %g -> %g N, keep and off with it: the sensor's noise is %g N", t.force_on_N,
-           raised_N, noise_N);
+      note(format("force_on %g -> %g N, keep and off with it: the sensor's noise is %g N",
+                  t.force_on_N, raised_N, noise_N));
       t.force_keep_N *= raised_N / t.force_on_N;
       t.force_off_N *= raised_N / t.force_on_N;
       t.force_on_N = raised_N;
     }
     const double limit_least_N = kProbeOverOn * t.force_on_N;
     if (task.force_limit_N < limit_least_N) {
-      note("force_limit %g -> %g N: %g force_on", task.force_limit_N, limit_least_N, kProbeOverOn);
+      note(format("force_limit %g -> %g N: %g force_on", task.force_limit_N, limit_least_N,
+                  kProbeOverOn));
       task.force_limit_N = limit_least_N;
     }
     if (task.force_limit_N > cell_.force_fault_N) {
@@ -92,14 +91,14 @@ class Fitting {
     const double damping_least = damping_least_Nspm(loop_);
     if (c.damping_Nspm < damping_least) {
       const double raised = kDampingMargin * damping_least;
-      note("damping %g -> %.4g Ns/m: at least 1.5 k_e tau = 1.5 * %g * %g = %.4g", c.damping_Nspm,
-           raised, loop_.stiffness_Npm, loop_.latency_s(), damping_least);
+      note(format("damping %g -> %.4g Ns/m: at least 1.5 k_e tau = 1.5 * %g * %g = %.4g",
+                  c.damping_Nspm, raised, loop_.stiffness_Npm, loop_.latency_s(), damping_least));
       c.damping_Nspm = raised;
     }
     const double mass_most = mass_most_kg(loop_, c.damping_Nspm);
     if (c.mass_kg > mass_most) {
-      note("mass %g -> %.4g kg: at most D tau = %.4g * %g", c.mass_kg, mass_most, c.damping_Nspm,
-           loop_.latency_s());
+      note(format("mass %g -> %.4g kg: at most D tau = %.4g * %g", c.mass_kg, mass_most,
+                  c.damping_Nspm, loop_.latency_s()));
       c.mass_kg = mass_most;
     }
   }
@@ -122,11 +121,11 @@ class Fitting {
                  lowered_mps, kPeakShare, cell_.force_fault_N, force_on_N, loop_.stiffness_Npm,
                  seconds, kContactSpeedMin_mps));
     }
-    note(
+    note(format(
         "contact speed %g -> %.4g m/s: the peak force F_on + k_e v ((n + 1) T + tau_arm + M / D) "
         "= %g + %g * v * %.4g was %.3g N, now %g of the fault at %g N",
         speeds.contact_mps, lowered_mps, force_on_N, loop_.stiffness_Npm, seconds, peak_N,
-        kPeakShare, cell_.force_fault_N);
+        kPeakShare, cell_.force_fault_N));
     stretch_timeout(speeds.contact_mps / lowered_mps);
     speeds.contact_mps = lowered_mps;
   }
@@ -134,8 +133,8 @@ class Fitting {
   void stretch_timeout(double factor) {
     std::uint32_t& timeout_us = fit_.task.motion.timeout_us;
     const double longer_us = std::min(factor * timeout_us, kTimeoutMax_us);
-    note("timeout %g -> %.4g s: as much longer as the contact speed is lower", 1e-6 * timeout_us,
-         1e-6 * longer_us);
+    note(format("timeout %g -> %.4g s: as much longer as the contact speed is lower",
+                1e-6 * timeout_us, 1e-6 * longer_us));
     timeout_us = static_cast<std::uint32_t>(longer_us);
   }
 

@@ -4,20 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace tenon {
 
-/// printf into a string, as long as it gets.
-template <typename... Values>
-[[nodiscard]] std::string format(const char* pattern, Values... values) {
-  const int length = std::snprintf(nullptr, 0, pattern, values...);
-  std::string text(length > 0 ? static_cast<std::size_t>(length) : 0, '\0');
-  std::snprintf(text.data(), text.size() + 1, pattern, values...);
-  return text;
-}
+/// printf into a string, as long as it gets. The compiler holds the values against the pattern.
+[[nodiscard, gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 
 inline constexpr std::array<const char*, 6> kAxisNames = {"x", "y", "z", "rx", "ry", "rz"};
 

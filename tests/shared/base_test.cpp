@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +17,14 @@ namespace tenon {
 namespace {
 
 std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
+
+TEST(Text, AFormatIsAsLongAsItGets) {
+  EXPECT_EQ(format("%s: %+.2f mm, %zu of %d", "gap", -0.125, std::size_t{3}, 7),
+            "gap: -0.12 mm, 3 of 7");
+  EXPECT_EQ(format("%s", std::string(10'000, 'x').c_str()).size(), 10'000U);
+  EXPECT_EQ(format("%s", ""), "");
+  EXPECT_EQ(format("100 %%"), "100 %");
+}
 
 TEST(Text, AShellReadsAWordAsItWas) {
   EXPECT_EQ(shell_word("hw/cells/gantry3.yaml"), "hw/cells/gantry3.yaml");
