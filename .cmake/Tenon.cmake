@@ -14,7 +14,7 @@
 # ---------------------------------------------------------------------------------------------
 # Who may use whom. One row per target: everything that it may link, and therefore include.
 # ---------------------------------------------------------------------------------------------
-set(TENON_LIBRARIES shared shared_system shared_config lcmtypes
+set(TENON_LIBRARIES shared shared_system shared_drawing shared_config lcmtypes
     planner planner_belief planner_search planner_judge planner_report
     executor executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
@@ -23,6 +23,7 @@ set(TENON_LIBRARIES shared shared_system shared_config lcmtypes
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
 set(TENON_MAY_USE_shared_system shared Threads::Threads)
+set(TENON_MAY_USE_shared_drawing shared)
 set(TENON_MAY_USE_shared_config shared shared_system yaml-cpp urdfdom::urdfdom_model
                                 console_bridge::console_bridge nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
@@ -30,7 +31,7 @@ set(TENON_MAY_USE_planner       shared planner_belief planner_search planner_jud
 set(TENON_MAY_USE_planner_belief shared shared_system)
 set(TENON_MAY_USE_planner_search shared planner_belief)
 set(TENON_MAY_USE_planner_judge  shared planner_belief)
-set(TENON_MAY_USE_planner_report shared planner planner_belief planner_judge
+set(TENON_MAY_USE_planner_report shared shared_drawing planner planner_belief planner_judge
                                  nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_executor                shared executor_motion)
 set(TENON_MAY_USE_executor_states         shared)
@@ -55,7 +56,8 @@ set(TENON_MAY_USE_hw_load       shared hw_arm)
 set(TENON_MAY_USE_sim_physics    shared ODE::ODE)
 # The arm's links and joints are bodies of the same engine.
 set(TENON_MAY_USE_sim_cell       shared sim_physics ODE::ODE nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_sim_evaluation shared shared_system sim_cell nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_sim_evaluation shared shared_system shared_drawing sim_cell
+                                 nlohmann_json::nlohmann_json)
 # The evaluation runs executor and virtual arm in lockstep inside one process.
 set(TENON_MAY_USE_sim_evaluation_chain shared sim_evaluation sim_cell
                                        executor_dry_run executor_loop executor_telemetry hw_arm)

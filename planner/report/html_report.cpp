@@ -11,9 +11,19 @@
 #include "planner/report/summary.h"
 #include "planner/report/touched.h"
 #include "shared/base/text.h"
+#include "shared/drawing/html.h"
+#include "shared/drawing/view.h"
 
 namespace tenon::planner {
 namespace {
+
+constexpr const char* kStyle =
+    "body{font:15px/1.45 sans-serif;max-width:1100px;margin:24px auto;"
+    "padding:0 16px;color:#222}h1{font-size:24px;margin-bottom:4px}h2{font-size:18px;"
+    "margin:28px 0 8px}table{border-collapse:collapse;font-size:13px}td,th{border-bottom:1px "
+    "solid #ddd;padding:3px 9px;text-align:left;vertical-align:top}th{background:#f4f4f4}"
+    "figure{display:inline-block;width:200px;margin:0 12px 14px 0;vertical-align:top;"
+    "font-size:12px}svg{background:#fff;display:block;max-height:640px}.num{text-align:right}";
 
 ReportData data_of(const Plan& plan, const Task& task, const Certification& certification,
                    const Validation& validation) {
@@ -21,18 +31,6 @@ ReportData data_of(const Plan& plan, const Task& task, const Certification& cert
   ReportData data{plan, task, chains, certification.holds(), validation, {}};
   data.nodes = nodes_of(data.is_baseline() ? finished(validation) : chains, task);
   return data;
-}
-
-std::string head(const std::string& title) {
-  return "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>" + title +
-         "</title>\n<style>body{font:15px/1.45 sans-serif;max-width:1100px;margin:24px auto;"
-         "padding:0 16px;color:#222}h1{font-size:24px;margin-bottom:4px}h2{font-size:18px;"
-         "margin:28px 0 8px}table{border-collapse:collapse;font-size:13px}td,th{border-bottom:1px "
-         "solid #ddd;padding:3px 9px;text-align:left;vertical-align:top}th{background:#f4f4f4}"
-         "figure{display:inline-block;width:200px;margin:0 12px 14px 0;vertical-align:top;"
-         "font-size:12px}svg{background:#fff;display:block;max-height:640px}.num{text-align:right}"
-         "</style></head>\n<body>\n<h1>" +
-         title + "</h1>\n";
 }
 
 std::string verdict(const ReportData& data) {
@@ -89,15 +87,16 @@ std::string figures(const ReportData& data) {
   for (const Chain& chain : data.chains) steps = std::min(steps, chain.moves.size());
   std::string html;
   for (std::size_t step = 0; step < steps; ++step) {
-    html += "<figure>";
-    for (const View& view : views_of(data.plan.coordinates)) {
-      html += step_picture(data, view, step);
+    std::string pictures;
+    for (const drawing::View& view : drawing::views_of(data.plan.coordinates)) {
+      pictures += step_picture(data, view, step);
     }
     const std::set<std::string> touched = touched_after(data, step);
-    html += format("<figcaption>step %zu: ", step) + displacement_text(data.plan.steps[step]) +
-            "<br>" + outcomes_text(data, step) +
-            (touched.empty() ? "" : "<br>touches " + names_of(touched)) + shrinkages(data, step) +
-            "</figcaption></figure>\n";
+    html += drawing::figure(
+        pictures, format("step %zu: ", step) + displacement_text(data.plan.steps[step]) + "<br>" +
+                      outcomes_text(data, step) +
+                      (touched.empty() ? "" : "<br>touches " + names_of(touched)) +
+                      shrinkages(data, step));
   }
   return html;
 }
@@ -148,22 +147,23 @@ std::string table(const Plan& plan) {
 std::string html_report(const Plan& plan, const Task& task, const Certification& certification,
                         const Validation& validation) {
   const ReportData data = data_of(plan, task, certification, validation);
-  std::string page = head(escaped(plan.task_name) + ", start " + escaped(plan.start_name)) +
-                     verdict(data) + reasons(data);
-  for (const View& view : views_of(plan.coordinates)) {
-    page += std::string("<h2>") + view.title + "</h2>\n" + overview(data, view);
+  const std::string title =
+      drawing::escaped(plan.task_name) + ", start " + drawing::escaped(plan.start_name);
+  std::string body = verdict(data) + reasons(data);
+  for (const drawing::View& view : drawing::views_of(plan.coordinates)) {
+    body += std::string("<h2>") + view.title + "</h2>\n" + overview(data, view);
   }
-  page +=
+  body +=
       "<p>Blue: the part at its nominal start; green: at the goal. Coloured: the paths of the "
       "particles, from their hollow dots, as certified. Grey: " +
       std::to_string(validation.draws.size()) + " random starts.</p>\n";
-  page += "<h2>Uncertainty over the steps</h2>\n" + uncertainty_chart(data);
-  page +=
+  body += "<h2>Uncertainty over the steps</h2>\n" + uncertainty_chart(data);
+  body +=
       "<h2>What each step does</h2>\n<p>Hollow dots: particles before the step, filled: after "
       "it. Red: what is touched. Bold: a direction whose uncertainty the step removes.</p>\n" +
       figures(data);
-  page += "<h2>Steps</h2>\n" + table(plan);
-  return page + "</body></html>\n";
+  body += "<h2>Steps</h2>\n" + table(plan);
+  return drawing::document({title, kStyle, title, body});
 }
 
 }  // namespace tenon::planner

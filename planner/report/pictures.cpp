@@ -27,7 +27,7 @@ std::vector<Vector3> tools_m(const ReportData& data) {
 }
 
 /// Filled where the plane through the goal cuts it; in outline what stands elsewhere.
-std::string environment(const ReportData& data, const Canvas& canvas, const View& view,
+std::string environment(const ReportData& data, const Canvas& canvas, const drawing::View& view,
                         const std::set<std::string>& touched) {
   double depth_m = data.plan.goal.position_m[view.along];
   if (view.along == 2) depth_m += kAboveFloor_m;
@@ -62,7 +62,7 @@ std::vector<Vector3> path_of(const Chain& chain) {
 
 }  // namespace
 
-std::string overview(const ReportData& data, const View& view) {
+std::string overview(const ReportData& data, const drawing::View& view) {
   const Canvas canvas(view, data.task, tools_m(data));
   std::string svg = canvas.open(1060) + environment(data, canvas, view, {});
   svg += part_at(data.task, canvas, data.plan.start,
@@ -82,7 +82,7 @@ std::string overview(const ReportData& data, const View& view) {
   return svg + "</svg>\n";
 }
 
-std::string step_picture(const ReportData& data, const View& view, std::size_t step) {
+std::string step_picture(const ReportData& data, const drawing::View& view, std::size_t step) {
   const Canvas canvas(view, data.task, tools_m(data));
   std::string svg = canvas.open(200) + environment(data, canvas, view, touched_after(data, step));
   svg += part_at(data.task, canvas, data.plan.goal, "fill='none' stroke='#2ca02c'");

@@ -11,10 +11,11 @@
 namespace tenon::planner {
 
 /// The environment, the part at start and goal, and the paths of all particles and draws.
-[[nodiscard]] std::string overview(const ReportData& data, const View& view);
+[[nodiscard]] std::string overview(const ReportData& data, const drawing::View& view);
 
 /// What one step does to every particle, and what is touched after it.
-[[nodiscard]] std::string step_picture(const ReportData& data, const View& view, std::size_t step);
+[[nodiscard]] std::string step_picture(const ReportData& data, const drawing::View& view,
+                                       std::size_t step);
 
 /// A bar a node, and what it shows in words.
 [[nodiscard]] std::string uncertainty_chart(const ReportData& data);

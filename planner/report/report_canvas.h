@@ -5,26 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "shared/drawing/view.h"
 #include "shared/task/task.h"
 
 namespace tenon::planner {
-
-/// Two axes of the task frame, and the third that is looked along.
-struct View {
-  int right = 0;
-  int up = 1;
-  int along = 2;
-  const char* title = "";
-};
-
-/// What shows the coordinates of a task: from above, from the side, or both.
-[[nodiscard]] std::vector<View> views_of(CoordinateMask coordinates);
 
 /// Styles are SVG attributes. Widths and radii are in thousandths of the picture's width.
 class Canvas {
  public:
   /// Holds the environment, and the held part at the goal and wherever these tools are.
-  Canvas(const View& view, const Task& task, const std::vector<Vector3>& tools_m);
+  Canvas(const drawing::View& view, const Task& task, const std::vector<Vector3>& tools_m);
 
   [[nodiscard]] std::string open(int width_px) const;
 
@@ -39,15 +29,15 @@ class Canvas {
   [[nodiscard]] std::string dot(const Vector3& p, double radius, const std::string& style) const;
 
  private:
-  using Point = Eigen::Vector2d;  // right, up
+  using Point = drawing::Point;
 
-  [[nodiscard]] Point flat(const Vector3& p) const { return {p[view_.right], p[view_.up]}; }
-  [[nodiscard]] std::string polygon(std::vector<Point> points, const std::string& style) const;
+  /// The hull.
+  [[nodiscard]] std::string polygon(std::vector<Point> points_m, const std::string& style) const;
   [[nodiscard]] double unit_mm() const { return high_.x() - low_.x(); }
   void grow(const Vector3& p);
 
-  View view_;
-  Point low_ = Point::Constant(1e9);
+  drawing::View view_;
+  Point low_ = Point::Constant(1e9);  ///< m, as high_
   Point high_ = Point::Constant(-1e9);
 };
 

@@ -4,20 +4,13 @@
 
 #include "planner/judge/shown.h"
 #include "shared/base/text.h"
+#include "shared/drawing/html.h"
 
 namespace tenon::planner {
 
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    safe += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  }
-  return safe;
-}
-
 std::string names_of(const std::set<std::string>& names) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + escaped(name);
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + drawing::escaped(name);
   return text;
 }
 

@@ -13,9 +13,6 @@ namespace tenon::planner {
 inline constexpr double kCollapsed = 0.2;
 inline constexpr double kWorthTelling = 2e-3;  ///< m or rad
 
-/// With <, > and & as HTML wants them.
-[[nodiscard]] std::string escaped(const std::string& text);
-
 /// "wall, table", escaped.
 [[nodiscard]] std::string names_of(const std::set<std::string>& names);
 

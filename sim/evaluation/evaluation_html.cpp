@@ -1,9 +1,9 @@
 #include "sim/evaluation/evaluation_html.h"
 
 #include "shared/base/text.h"
+#include "shared/drawing/html.h"
+#include "shared/drawing/view.h"
 #include "sim/evaluation/figures.h"
-#include "sim/evaluation/outline.h"
-#include "sim/evaluation/plot.h"
 #include "sim/evaluation/summary.h"
 
 namespace tenon::sim {
@@ -54,25 +54,24 @@ std::string legend() {
 
 std::string name_of(const Candidate& candidate) {
   const std::size_t slash = candidate.file.rfind('/');
-  return escaped(slash == std::string::npos ? candidate.file : candidate.file.substr(slash + 1));
+  return drawing::escaped(slash == std::string::npos ? candidate.file
+                                                     : candidate.file.substr(slash + 1));
 }
 
-class Page {
+class Report {
  public:
-  explicit Page(const Evaluation& evaluation) : evaluation_(evaluation), task_(evaluation.task) {
+  explicit Report(const Evaluation& evaluation) : evaluation_(evaluation), task_(evaluation.task) {
     for (const Candidate& candidate : evaluation.candidates) {
       summaries_.push_back(summarise(task_, candidate));
     }
   }
 
   [[nodiscard]] std::string html() const {
-    const std::string title = escaped(task_.name);
-    std::string page = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>" +
-                       title + ": evaluation</title>\n<style>" + kStyle + kFigureStyle +
-                       "</style></head>\n<body>\n<h1>" + title + "</h1>\n" + opening() + legend();
-    page += plans_table() + errors_table();
-    for (std::size_t i = 0; i < summaries_.size(); ++i) page += section(i);
-    return page + "</body></html>\n";
+    const std::string title = drawing::escaped(task_.name);
+    std::string body = opening() + legend() + plans_table() + errors_table();
+    for (std::size_t i = 0; i < summaries_.size(); ++i) body += section(i);
+    return drawing::document(
+        {title + ": evaluation", std::string(kStyle) + kFigureStyle, title, body});
   }
 
  private:
@@ -80,12 +79,12 @@ class Page {
     std::size_t runs = 0;
     for (const Candidate& candidate : evaluation_.candidates) runs += candidate.runs.size();
     std::string text = format("<p class='grey'>%zu runs on cell ", runs) +
-                       escaped(evaluation_.cell) +
+                       drawing::escaped(evaluation_.cell) +
                        format(", seed %llu. ", static_cast<unsigned long long>(evaluation_.seed));
     text += evaluation_.ranges
                 ? "Where the environment stands is drawn, and how else the world differs: "
                   "experiment " +
-                      escaped(evaluation_.ranges->name) + "."
+                      drawing::escaped(evaluation_.ranges->name) + "."
                 : "Where the environment stands is drawn; all else is as the files say.";
     return text + " Every plan meets the same worlds. Intervals: 95 % (Wilson).</p>\n";
   }
@@ -150,45 +149,46 @@ class Page {
     return html + "</table>\n";
   }
 
-  [[nodiscard]] static std::string figure(const std::string& svg, const std::string& caption) {
-    return "<figure>" + svg + "<figcaption>" + caption + "</figcaption></figure>\n";
-  }
-
   [[nodiscard]] std::string section(std::size_t i) const {
     const Candidate& candidate = evaluation_.candidates[i];
     std::string html = "<h2 id='plan" + std::to_string(i) + "'>" + name_of(candidate) + ": " +
                        to_string(candidate.plan.method) + ", start " +
-                       escaped(candidate.plan.start_name) + "</h2>\n";
+                       drawing::escaped(candidate.plan.start_name) + "</h2>\n";
     if (candidate.plan.task_hash != task_.hash) {
       html += "<p class='grey'>The plan was made for another task, or another variant of it.</p>\n";
     }
-    for (const View& view : views_of(task_.coordinates)) html += figures(candidate, view);
+    for (const drawing::View& view : drawing::views_of(task_.coordinates)) {
+      html += figures(candidate, view);
+    }
     if (!evaluation_.by.empty()) {
-      html += figure(figure_of_breakdown(evaluation_, candidate),
-                     evaluation_.by.size() == 1
-                         ? "Success over the drawn quantity, with 95 % intervals."
-                         : "Success in % over the two drawn quantities; point at a cell for its "
-                           "counts.");
+      html += drawing::figure(
+          figure_of_breakdown(evaluation_, candidate),
+          evaluation_.by.size() == 1
+              ? "Success over the drawn quantity, with 95 % intervals."
+              : "Success in % over the two drawn quantities; point at a cell for its "
+                "counts.");
     }
     return html + failures_table(candidate);
   }
 
   /// Two columns.
-  [[nodiscard]] std::string figures(const Candidate& candidate, const View& view) const {
+  [[nodiscard]] std::string figures(const Candidate& candidate, const drawing::View& view) const {
     std::string html = "<div class='row'>\n<div>\n";
-    html += figure(figure_of_runs(evaluation_, candidate, view),
-                   "Where each run began (small dots) and ended, joined by a line, seen from the "
-                   "environment as it really stood. Dashed: the part at its nominal start; green: "
-                   "at the goal.");
-    html += figure(figure_of_errors(evaluation_, candidate),
-                   "How far from the goal the runs ended; logarithmic.");
+    html += drawing::figure(
+        figure_of_runs(evaluation_, candidate, view),
+        "Where each run began (small dots) and ended, joined by a line, seen from the "
+        "environment as it really stood. Dashed: the part at its nominal start; green: "
+        "at the goal.");
+    html += drawing::figure(figure_of_errors(evaluation_, candidate),
+                            "How far from the goal the runs ended; logarithmic.");
     html += "</div>\n<div class='narrow'>\n";
-    html += figure(figure_of_draws(evaluation_, candidate, view),
-                   "Where the environment really stood, about where the plan believed it (green). "
-                   "Rings: standard deviations.");
-    html += figure(figure_of_ends(evaluation_, candidate, view),
-                   "Where the part ended about its goal, and the tolerance of " +
-                       format("%g mm.", 1e3 * task_.goal_tolerance_m));
+    html += drawing::figure(
+        figure_of_draws(evaluation_, candidate, view),
+        "Where the environment really stood, about where the plan believed it (green). "
+        "Rings: standard deviations.");
+    html += drawing::figure(figure_of_ends(evaluation_, candidate, view),
+                            "Where the part ended about its goal, and the tolerance of " +
+                                format("%g mm.", 1e3 * task_.goal_tolerance_m));
     return html + "</div>\n</div>\n";
   }
 
@@ -199,7 +199,7 @@ class Page {
 
   [[nodiscard]] static std::string step_cells(const TrialResult& result) {
     return number_cell(result.step < 0 ? "" : std::to_string(result.step)) + "<td>" +
-           escaped(result.outcome) + "</td>";
+           drawing::escaped(result.outcome) + "</td>";
   }
 
   [[nodiscard]] static std::string kinds_table(const Candidate& candidate) {
@@ -209,8 +209,8 @@ class Page {
     for (const FailureKind& kind : kinds_of_failure(candidate)) {
       const TrialResult& result = kind.first->result;
       html += "<tr>" + number_cell(std::to_string(kind.count)) + class_cell(result) +
-              step_cells(result) + "<td>" + escaped(result.ending) + "</td><td>" +
-              escaped(result.reason) + "</td></tr>\n";
+              step_cells(result) + "<td>" + drawing::escaped(result.ending) + "</td><td>" +
+              drawing::escaped(result.reason) + "</td></tr>\n";
     }
     return html + "</table>\n";
   }
@@ -228,8 +228,8 @@ class Page {
       const TrialResult& result = run->result;
       html += "<tr>" + number_cell(std::to_string(run->trial.number)) +
               number_cell(format("%.2f", run->trial.distance)) + class_cell(result) +
-              step_cells(result) + "<td>" + escaped(result.reason) + "<br><code>" +
-              escaped(replay_command(evaluation_, candidate, run->trial.number)) +
+              step_cells(result) + "<td>" + drawing::escaped(result.reason) + "<br><code>" +
+              drawing::escaped(replay_command(evaluation_, candidate, run->trial.number)) +
               "</code></td></tr>\n";
     }
     return html + "</table></details>\n";
@@ -242,6 +242,6 @@ class Page {
 
 }  // namespace
 
-std::string evaluation_html(const Evaluation& evaluation) { return Page(evaluation).html(); }
+std::string evaluation_html(const Evaluation& evaluation) { return Report(evaluation).html(); }
 
 }  // namespace tenon::sim

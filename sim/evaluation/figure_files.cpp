@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "shared/base/text.h"
+#include "shared/drawing/view.h"
 #include "sim/evaluation/figures.h"
-#include "sim/evaluation/outline.h"
 
 namespace tenon::sim {
 namespace {
@@ -28,8 +28,8 @@ void add(std::vector<FigureFile>& files, const Evaluation& evaluation, const Can
   const auto put = [&](const std::string& figure, std::string svg) {
     files.push_back({plan + "_" + figure + ".svg", document(std::move(svg))});
   };
-  const std::vector<View> views = views_of(evaluation.task.coordinates);
-  for (const View& view : views) {
+  const std::vector<drawing::View> views = drawing::views_of(evaluation.task.coordinates);
+  for (const drawing::View& view : views) {
     const std::string side =
         views.size() < 2 ? "" : std::string("_") + axis_name(view.right) + axis_name(view.up);
     put("runs" + side, figure_of_runs(evaluation, candidate, view));

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "shared/base/text.h"
+#include "sim/evaluation/outline.h"
+#include "sim/evaluation/plot.h"
 
 namespace tenon::sim {
 namespace {
@@ -35,12 +37,12 @@ struct Extent {
   }
 };
 
-Plot::Axis axis_of(const Extent& extent, const View& view, int up) {
+Plot::Axis axis_of(const Extent& extent, const drawing::View& view, int up) {
   return {extent.low[up], extent.high[up],
           std::string(axis_name(up == 0 ? view.right : view.up)) + " (mm)"};
 }
 
-Plot plot_of(const Extent& extent, const View& view, int width_px) {
+Plot plot_of(const Extent& extent, const drawing::View& view, int width_px) {
   return Plot::to_scale(width_px, width_px, axis_of(extent, view, 0), axis_of(extent, view, 1));
 }
 
@@ -53,9 +55,9 @@ Vector3 began_at(const Candidate& candidate, const Run& run) {
   return compose(inverse(displaced(Pose{}, run.trial.offset)), candidate.start.pose).position_m;
 }
 
-std::optional<Point> ended_at(const Task& task, const Run& run, const View& view) {
+std::optional<Point> ended_at(const Task& task, const Run& run, const drawing::View& view) {
   if (!run.result.error) return std::nullopt;
-  return view(task.goal.position_m + run.result.error->head<3>());
+  return view.mm(task.goal.position_m + run.result.error->head<3>());
 }
 
 /// Successes as dots, then a cross for every other run, where `at` says; nothing where it says
@@ -78,12 +80,12 @@ void mark(Plot& plot, const Candidate& candidate, double size_px, const At& at) 
   }
 }
 
-void draw_part(Plot& plot, const Task& task, const Pose& pose, const View& view,
+void draw_part(Plot& plot, const Task& task, const Pose& pose, const drawing::View& view,
                std::string_view style) {
   for (const Shape& shape : task.held) plot.polygon(outline(shape, pose, view), style);
 }
 
-void draw_environment(Plot& plot, const Task& task, const View& view) {
+void draw_environment(Plot& plot, const Task& task, const drawing::View& view) {
   const auto bumps = [&](const Shape& shape) {
     return std::any_of(task.held.begin(), task.held.end(), [&](const Shape& held) {
       return share_depth(shape, Pose{}, held, task.goal, view);
@@ -97,11 +99,11 @@ void draw_environment(Plot& plot, const Task& task, const View& view) {
   }
 }
 
-Extent extent_of_runs(const Task& task, const Candidate& candidate, const View& view) {
+Extent extent_of_runs(const Task& task, const Candidate& candidate, const drawing::View& view) {
   Extent content;
   for (const auto& [number, run] : candidate.runs) {
     if (const auto ended = ended_at(task, run, view)) {
-      content.add(view(began_at(candidate, run)));
+      content.add(view.mm(began_at(candidate, run)));
       content.add(*ended);
     }
   }
@@ -189,7 +191,7 @@ const char* colour_of(TrialClass trial_class) {
 }
 
 std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candidate,
-                           const View& view) {
+                           const drawing::View& view) {
   const Task& task = evaluation.task;
   Plot plot = plot_of(extent_of_runs(task, candidate, view), view, kWide_px);
   draw_environment(plot, task, view);
@@ -203,7 +205,7 @@ std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candid
   for (const auto& [number, run] : candidate.runs) {
     const auto ended = ended_at(task, run, view);
     if (!ended) continue;
-    began.push_back(view(began_at(candidate, run)));
+    began.push_back(view.mm(began_at(candidate, run)));
     lines[static_cast<std::size_t>(classify(run.result))].emplace_back(began.back(), *ended);
   }
   const double opacity =
@@ -221,11 +223,11 @@ std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candid
 }
 
 std::string figure_of_draws(const Evaluation& evaluation, const Candidate& candidate,
-                            const View& view) {
+                            const drawing::View& view) {
   const auto at = [&](const Run& run) {
-    return std::optional<Point>(view(run.trial.offset.head<3>()));
+    return std::optional<Point>(view.mm(run.trial.offset.head<3>()));
   };
-  const Point sigma = view(candidate.start.sigma.head<3>());
+  const Point sigma = view.mm(candidate.start.sigma.head<3>());
   Extent extent;
   extent.add(Point(-3.3 * sigma.maxCoeff() * Point::Ones()));
   extent.add(Point(3.3 * sigma.maxCoeff() * Point::Ones()));
@@ -245,7 +247,7 @@ std::string figure_of_draws(const Evaluation& evaluation, const Candidate& candi
 }
 
 std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candidate,
-                           const View& view) {
+                           const drawing::View& view) {
   const double tolerance_mm = 1e3 * evaluation.task.goal_tolerance_m;
   Extent extent;
   extent.add(Point::Constant(-1.5 * tolerance_mm));
@@ -257,7 +259,7 @@ std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candid
   plot.line({0.0, -0.15 * tolerance_mm}, {0.0, 0.15 * tolerance_mm}, "stroke='#2a7f3f'");
   mark(plot, candidate, 4.0, [&](const Run& run) -> std::optional<Point> {
     if (!run.result.error) return std::nullopt;
-    return view(run.result.error->head<3>());
+    return view.mm(run.result.error->head<3>());
   });
   return plot.svg();
 }

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "shared/drawing/view.h"
 #include "sim/evaluation/evaluation.h"
-#include "sim/evaluation/outline.h"
 #include "sim/evaluation/summary.h"
 
 namespace tenon::sim {
@@ -22,13 +22,13 @@ inline constexpr const char* kFigureStyle =
 
 /// Where each run began and ended, seen from the environment as it really stood.
 [[nodiscard]] std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candidate,
-                                         const View& view);
+                                         const drawing::View& view);
 /// Where the environment stood in each run, about where it was said to stand.
 [[nodiscard]] std::string figure_of_draws(const Evaluation& evaluation, const Candidate& candidate,
-                                          const View& view);
+                                          const drawing::View& view);
 /// Where the part ended, close to the goal.
 [[nodiscard]] std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candidate,
-                                         const View& view);
+                                         const drawing::View& view);
 /// How many ended how far from the goal.
 [[nodiscard]] std::string figure_of_errors(const Evaluation& evaluation,
                                            const Candidate& candidate);

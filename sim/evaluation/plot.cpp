@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "shared/base/text.h"
+#include "shared/drawing/html.h"
 
 namespace tenon::sim {
 namespace {
@@ -35,24 +36,6 @@ std::string tick_text(const Plot::Axis& axis, double value) {
 
 }  // namespace
 
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "&lt;";
-    } else if (c == '>') {
-      safe += "&gt;";
-    } else if (c == '&') {
-      safe += "&amp;";
-    } else if (c == '\'') {
-      safe += "&#39;";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
-
 Plot::Plot(Axis right, Axis up, const Point& scale)
     : right_(std::move(right)),
       up_(std::move(up)),
@@ -76,12 +59,9 @@ Point Plot::px(const Point& point) const {
 }
 
 void Plot::polygon(const std::vector<Point>& corners, std::string_view style) {
-  marks_ += "<polygon points='";
-  for (const Point& corner : corners) {
-    const Point p = px(corner);
-    marks_ += format("%.1f,%.1f ", p.x(), p.y());
-  }
-  marks_ += "' " + std::string(style) + "/>\n";
+  std::vector<Point> on_page;
+  for (const Point& corner : corners) on_page.push_back(px(corner));
+  marks_ += drawing::polygon(on_page, 1, style);
 }
 
 void Plot::line(const Point& from, const Point& to, std::string_view style) {
@@ -126,7 +106,7 @@ void Plot::crosses(const std::vector<std::pair<Point, std::string>>& at, double 
     const Point p = px(point) - Point::Constant(0.5 * size_px);
     marks_ += format("<path d='M%.1f %.1fl%.1f %.1fm0 %.1fl%.1f %.1f'>", p.x(), p.y(), size_px,
                      size_px, -size_px, -size_px, size_px) +
-              "<title>" + escaped(title) + "</title></path>\n";
+              "<title>" + drawing::escaped(title) + "</title></path>\n";
   }
   marks_ += "</g>\n";
 }
@@ -137,13 +117,13 @@ void Plot::rectangle(const Point& low, const Point& high, std::string_view style
   const Point size = (high - low).cwiseProduct(scale_);
   marks_ += format("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f' ", a.x(), a.y(), size.x(),
                    size.y()) +
-            std::string(style) + "><title>" + escaped(title) + "</title></rect>\n";
+            std::string(style) + "><title>" + drawing::escaped(title) + "</title></rect>\n";
 }
 
 void Plot::text(const Point& at, std::string_view text, std::string_view style) {
   const Point p = px(at);
   marks_ += format("<text x='%.1f' y='%.1f' ", p.x(), p.y()) + std::string(style) + ">" +
-            escaped(text) + "</text>\n";
+            drawing::escaped(text) + "</text>\n";
 }
 
 std::string Plot::ticks() const {
@@ -174,13 +154,13 @@ std::string Plot::ticks() const {
   });
   svg += format("<text class='label' x='%.1f' y='%.1f' text-anchor='middle'>",
                 0.5 * (kLeft_px + right), bottom + 36.0) +
-         escaped(right_.label) + "</text>\n";
+         drawing::escaped(right_.label) + "</text>\n";
   const double middle = 0.5 * (kTop_px + bottom);
   svg += format(
              "<text class='label' x='14' y='%.1f' text-anchor='middle' "
              "transform='rotate(-90 14 %.1f)'>",
              middle, middle) +
-         escaped(up_.label) + "</text>\n";
+         drawing::escaped(up_.label) + "</text>\n";
   return svg;
 }
 

@@ -2,18 +2,16 @@
 // A figure in SVG: a frame with ticks, and marks in the units of what is plotted. Private to
 // sim/evaluation.
 
-#include <Eigen/Core>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "shared/drawing/view.h"
+
 namespace tenon::sim {
 
-using Point = Eigen::Vector2d;
-
-/// `&`, `<`, `>` and quotes as HTML has them.
-[[nodiscard]] std::string escaped(std::string_view text);
+using drawing::Point;
 
 class Plot {
  public:

@@ -1,4 +1,4 @@
-// What the report draws: which planes, and what a plane cuts.
+// What the report draws: what a plane cuts, and what the picture holds.
 
 #include "planner/report/report_canvas.h"
 
@@ -11,22 +11,6 @@
 namespace tenon::planner {
 namespace {
 
-std::vector<std::pair<int, int>> axes_of(CoordinateMask coordinates) {
-  std::vector<std::pair<int, int>> axes;
-  for (const View& view : views_of(coordinates)) axes.emplace_back(view.right, view.up);
-  return axes;
-}
-
-TEST(ReportCanvas, ShowsThePlanesThatTheTaskMovesIn) {
-  using Axes = std::vector<std::pair<int, int>>;
-  EXPECT_EQ(axes_of(0b000011), (Axes{{0, 1}}));
-  EXPECT_EQ(axes_of(0b000001), (Axes{{0, 1}}));
-  EXPECT_EQ(axes_of(0b000101), (Axes{{0, 2}}));
-  EXPECT_EQ(axes_of(0b010101), (Axes{{0, 2}})) << "a rotation about y shows from the side";
-  EXPECT_EQ(axes_of(0b000110), (Axes{{1, 2}}));
-  EXPECT_EQ(axes_of(0b000111), (Axes{{0, 1}, {0, 2}}));
-}
-
 Shape box(const Vector3& size_m, const Vector3& at_m) {
   Shape shape;
   shape.name = "box";
@@ -38,7 +22,7 @@ Shape box(const Vector3& size_m, const Vector3& at_m) {
 Canvas from_the_side() {
   Task task = room_task();
   task.environment = {box({1.0, 1.0, 1.0}, Vector3::Zero())};
-  return {views_of(0b101).front(), task, {Vector3::Zero()}};
+  return {drawing::views_of(0b101).front(), task, {Vector3::Zero()}};
 }
 
 std::size_t corners(const std::string& polygon) {
@@ -86,7 +70,7 @@ TEST(ReportCanvas, APictureHoldsEverythingWithARim) {
 TEST(ReportCanvas, APictureHoldsThePartWhereverItGoes) {
   Task task = room_task();
   task.held = {box({0.2, 0.2, 0.2}, Vector3::Zero())};
-  const Canvas canvas(views_of(0b101).front(), task, {Vector3::Zero(), {-0.73, 0.0, 0.0}});
+  const Canvas canvas(drawing::views_of(0b101).front(), task, {Vector3::Zero(), {-0.73, 0.0, 0.0}});
   // From -830 mm to the goal at 170 and 100 more: 1100 mm, and 22 on each side.
   EXPECT_NE(canvas.open(200).find("viewBox='-852.00 "), std::string::npos) << canvas.open(200);
 }

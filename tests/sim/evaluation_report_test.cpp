@@ -205,22 +205,15 @@ TEST(EvaluationOutline, ABoxTurnedByAnEighthShowsItsDiagonal) {
   Pose turned;
   turned.orientation = Eigen::AngleAxisd(0.25 * 3.14159265358979, Vector3::UnitZ());
   double right_mm = 0.0;
-  for (const Point& point : outline(box, turned, View{})) right_mm = std::max(right_mm, point.x());
+  for (const drawing::Point& point : outline(box, turned, drawing::View{}))
+    right_mm = std::max(right_mm, point.x());
   EXPECT_NEAR(right_mm, 141.42136, 1e-4);
-  EXPECT_EQ(outline(box, turned, View{}).size(), 4U);
+  EXPECT_EQ(outline(box, turned, drawing::View{}).size(), 4U);
   // From the front it is 282.8 mm wide and 100 mm high.
-  const auto front = outline(box, turned, View{0, 2, 1});
+  const auto front = outline(box, turned, drawing::View{0, 2, 1});
   double up_mm = 0.0;
-  for (const Point& point : front) up_mm = std::max(up_mm, point.y());
+  for (const drawing::Point& point : front) up_mm = std::max(up_mm, point.y());
   EXPECT_NEAR(up_mm, 50.0, 1e-6);
-}
-
-TEST(EvaluationOutline, ATaskInSpaceIsSeenFromTwoSides) {
-  EXPECT_EQ(views_of(0b000011).size(), 1U);
-  EXPECT_EQ(views_of(0b000111).size(), 2U);
-  ASSERT_EQ(views_of(0b000101).size(), 1U);
-  EXPECT_EQ(views_of(0b000101)[0].up, 2);
-  EXPECT_EQ(views_of(0b000110)[0].right, 1);
 }
 
 }  // namespace
