@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "executor/motion/joint_difference.h"
+#include "shared/base/random.h"
 #include "shared/base/text.h"
 
 namespace tenon::executor {
@@ -80,13 +80,13 @@ StartPositions start_positions(const Pose& start, const Cell& cell,
   SerialChain::InverseParameters parameters;
   parameters.limit_margin = kJointMargin;
   double turned_rad = 0.0;
-  std::mt19937 random(1);
+  Random random(1);
   JointVector seed = kinematics.middle();
   for (int attempt = 0; attempt < kSeeds; ++attempt) {
     const auto inverse = kinematics.joints(start, seed, parameters);
     for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
       const Joint& joint = cell.robot.joints[i];
-      seed[i] = std::uniform_real_distribution<double>(joint.lower, joint.upper)(random);
+      seed[i] = joint.lower + random.uniform() * (joint.upper - joint.lower);
     }
     if (inverse.status != SerialChain::InverseStatus::kSolved) continue;
     const Vector6 off = displacement_between(kinematics.tool(inverse.position), start);
