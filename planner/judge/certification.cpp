@@ -6,6 +6,7 @@
 #include "planner/belief/belief_summary.h"
 #include "planner/judge/plan_draft.h"
 #include "shared/base/error.h"
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/plan/codec.h"
 #include "shared/task/find_start.h"
@@ -36,7 +37,7 @@ std::string difference(const GuardedMove::Result& move, const GuardedMove::Resul
   const Vector6 off = displacement_between(reference.pose, move.pose);
   if (off.head<3>().norm() > kPoseAgreement_m || off.tail<3>().norm() > kPoseAgreement_rad) {
     return format("pose differs by %.3f mm and %.3f degrees", 1e3 * off.head<3>().norm(),
-                  180.0 / std::numbers::pi * off.tail<3>().norm());
+                  degrees(off.tail<3>().norm()));
   }
   return {};
 }

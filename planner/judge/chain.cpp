@@ -1,6 +1,6 @@
 #include "planner/judge/chain.h"
 
-#include "planner/judge/shown.h"
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 
 namespace tenon::planner {

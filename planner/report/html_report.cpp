@@ -4,12 +4,12 @@
 #include <set>
 #include <vector>
 
-#include "planner/judge/shown.h"
 #include "planner/report/pictures.h"
 #include "planner/report/report_data.h"
 #include "planner/report/report_words.h"
 #include "planner/report/summary.h"
 #include "planner/report/touched.h"
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
 #include "shared/drawing/view.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "planner/judge/shown.h"
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
 

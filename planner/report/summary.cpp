@@ -4,7 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "planner/judge/shown.h"
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/task/inserted.h"
 

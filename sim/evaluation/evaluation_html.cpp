@@ -1,5 +1,6 @@
 #include "sim/evaluation/evaluation_html.h"
 
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
 #include "shared/drawing/view.h"
@@ -127,15 +128,14 @@ class Report {
       const Summary& summary = summaries_[i];
       bool first = true;
       for (const AxisError& error : summary.errors) {
-        const bool linear = error.axis < 3;
-        const double unit = linear ? 1e3 : 180.0 / M_PI;
-        const char* name = linear ? "mm" : "&deg;";
+        const int axis = error.axis;
+        const char* unit = axis < 3 ? "mm" : "&deg;";
         html += "<tr><td>" + (first ? name_of(evaluation_.candidates[i]) : "") + "</td><td>" +
-                axis_name(error.axis) + "</td>" +
-                number_cell(format("%.2f %s", unit * error.initial.deviation, name)) +
-                number_cell(format("%.4f %s", unit * error.final.deviation, name)) +
+                axis_name(axis) + "</td>" +
+                number_cell(format("%.2f %s", shown(error.initial.deviation, axis), unit)) +
+                number_cell(format("%.4f %s", shown(error.final.deviation, axis), unit)) +
                 number_cell(ratio_text(error)) +
-                number_cell(format("%+.3f %s", unit * error.final.mean, name));
+                number_cell(format("%+.3f %s", shown(error.final.mean, axis), unit));
         const Quantiles& force = summary.contact_force_N;
         html += number_cell(first ? format("%.2f / %.2f mm", 1e3 * summary.error_norm_m.mean,
                                            1e3 * summary.error_norms_m.max)

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 
 namespace tenon::sim {
@@ -35,11 +36,12 @@ std::string describe(const Task& task, const Candidate& candidate) {
         text_of(within.rate) + "\n";
   }
   for (const AxisError& error : s.errors) {
-    const double unit = error.axis < 3 ? 1e3 : 180.0 / M_PI;
-    text += format("  %s: off by %.3f at first, then %.3f on average with deviation %.4f %s (",
-                   axis_name(error.axis), unit * error.initial.deviation, unit * error.final.mean,
-                   unit * error.final.deviation, error.axis < 3 ? "mm" : "deg") +
-            ratio_text(error) + ")\n";
+    const int axis = error.axis;
+    text +=
+        format("  %s: off by %.3f at first, then %.3f on average with deviation %.4f %s (",
+               axis_name(axis), shown(error.initial.deviation, axis), shown(error.final.mean, axis),
+               shown(error.final.deviation, axis), axis < 3 ? "mm" : "deg") +
+        ratio_text(error) + ")\n";
   }
   text += format("  distance from the goal where done: mean %.3f, p99 %.3f, max %.3f mm\n",
                  1e3 * s.error_norm_m.mean, 1e3 * s.error_norms_m.p99, 1e3 * s.error_norms_m.max);

@@ -10,6 +10,7 @@
 
 #include "shared/base/bytes.h"
 #include "shared/base/crc32c.h"
+#include "shared/base/shown.h"
 #include "shared/base/spsc_ring.h"
 #include "shared/base/text.h"
 
@@ -24,6 +25,12 @@ TEST(Text, AFormatIsAsLongAsItGets) {
   EXPECT_EQ(format("%s", std::string(10'000, 'x').c_str()).size(), 10'000U);
   EXPECT_EQ(format("%s", ""), "");
   EXPECT_EQ(format("100 %%"), "100 %");
+}
+
+TEST(Shown, LengthsAreMillimetresAndAnglesDegrees) {
+  EXPECT_DOUBLE_EQ(shown(0.002, 2), 2.0);
+  EXPECT_DOUBLE_EQ(shown(0.5 * 3.14159265358979323846, 3), 90.0);
+  EXPECT_DOUBLE_EQ(degrees(-3.14159265358979323846), -180.0);
 }
 
 TEST(Text, AShellReadsAWordAsItWas) {
