@@ -16,7 +16,6 @@
 #include "executor/main_exec_output.h"
 #include "executor/main_exec_run.h"
 #include "executor/telemetry/run_result.h"
-#include "executor/telemetry/trace.h"
 #include "hw/bus_load/bus_load.h"
 #include "hw/bus_load/response_times.h"
 #include "shared/base/error.h"
@@ -27,9 +26,6 @@ namespace tenon::executor {
 namespace {
 
 std::atomic<bool> stop_asked{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-void ask_to_stop(int /*signal*/) { stop_asked.store(true, std::memory_order_relaxed); }
 
 int run_plan(const Options& options, const Cell& cell, const DryRun& dry_run) {
   Controller::Parameters parameters;
@@ -38,8 +34,6 @@ int run_plan(const Options& options, const Cell& cell, const DryRun& dry_run) {
   TaskRun run(options, controller, &controller.runner(), stop_asked);
   StepPrinter printer(controller.runner());
   run.add(printer);
-  std::optional<TraceWriter> trace;
-  if (!options.trace.empty()) run.add(trace.emplace(options.trace, controller.runner()));
   run.run();
   return run.conclude(
       gather_result(controller, run.runner(), run.records_dropped(), run.arm_fault_text()));
@@ -86,8 +80,6 @@ int execute(const Options& options) {
 
 int parse_and_execute(int argc, char** argv) {
   const Options options = parse_options(argc, argv);
-  std::signal(SIGINT, &ask_to_stop);
-  std::signal(SIGTERM, &ask_to_stop);
   std::signal(SIGPIPE, SIG_IGN);
   return execute(options);
 }

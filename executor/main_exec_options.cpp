@@ -6,6 +6,7 @@
 #include "executor/telemetry/lcm_url.h"
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
+#include "shared/config/file_options.h"
 #include "shared/config/load.h"
 
 namespace tenon::executor {
@@ -63,6 +64,14 @@ Options parse_options(int argc, char** argv) {
 }
 
 void check_outputs(const Options& options) {
+  std::vector<FileOption> written = {{"--json", options.json}};
+  if (!options.dry_run) {
+    written.insert(written.end(), {{"--log", options.log},
+                                   {"--can-log", options.can_log},
+                                   {"--trace", options.trace},
+                                   {"--black-box", options.black_box}});
+  }
+  check_apart(written, {{"--cell", options.cell}, {"--plan", options.plan}});
   if (!options.dry_run) {
     if (options.can.empty()) throw InputError("--can is required, but for --dry-run; see --help");
     if (options.can.rfind("slcan-listen:", 0) == 0) {

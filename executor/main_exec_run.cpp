@@ -14,6 +14,7 @@
 #include "hw/can/open_bus.h"
 #include "hw/can/recording_bus.h"
 #include "shared/base/error.h"
+#include "shared/config/signals.h"
 #include "shared/system/monotonic_clock.h"
 
 namespace tenon::executor {
@@ -24,6 +25,7 @@ class CanLog : public RecordConsumer {
   explicit CanLog(const std::string& file) : log_(file) {}
   void consume(const CycleRecord& /*record*/) override { drain(); }
   void drain() { log_.drain(ring_); }
+  [[nodiscard]] RecordReport close() { return log_.close(ring_); }
   [[nodiscard]] hw::CanRecordRing& ring() { return ring_; }
 
  private:
@@ -50,7 +52,7 @@ void ask_for_real_time(const Options& options) {
   for (const std::string& line : missing) std::fprintf(stderr, "real time: %s\n", line.c_str());
 }
 
-std::vector<std::shared_ptr<lcm::LCM>> outputs(const Options& options) {
+TelemetryOutputs outputs(const Options& options) {
   std::vector<std::string> warnings;
   auto opened = open_telemetry(options.lcm_url, options.log, warnings);
   for (const std::string& line : warnings) std::fprintf(stderr, "%s\n", line.c_str());
@@ -72,7 +74,7 @@ std::vector<std::pair<std::string, std::uint64_t>> named(const hw::CanopenArm::C
 }  // namespace
 
 TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
-                 const std::atomic<bool>& stop)
+                 std::atomic<bool>& stop)
     : options_(options),
       task_(task),
       stop_(stop),
@@ -86,11 +88,15 @@ TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* st
       telemetry_(outputs(options), robot().joints.size(), steps, *recorder_) {
   recorder_->add(telemetry_);
   if (can_log_) recorder_->add(*can_log_);
+  if (!options.trace.empty() && steps != nullptr) {
+    recorder_->add(trace_.emplace(options.trace, *steps));
+  }
 }
 
 TaskRun::~TaskRun() = default;
 
 void TaskRun::run() {
+  stop_on_signals(stop_);
   recorder_->start();
   std::exception_ptr failure;
   std::thread real_time([&] {
@@ -124,16 +130,45 @@ std::string TaskRun::arm_fault_text() const {
   return hw::describe(task_.ending().arm_fault, robot());
 }
 
+// A record that the recorder's ring has lost is lost to both files that it feeds.
+std::vector<RecordReport> TaskRun::close_records() {
+  std::vector<RecordReport> reports;
+  const auto add = [&](RecordReport report) {
+    if (recorder_->dropped() > 0) report.lose(recorder_->dropped(), "written too slowly");
+    reports.push_back(std::move(report));
+  };
+  if (const RecordReport* log = telemetry_.close_log()) add(*log);
+  if (can_log_) reports.push_back(can_log_->close());
+  if (trace_) {
+    trace_->close();
+    add(trace_->report());
+  }
+  return reports;
+}
+
+void TaskRun::keep_black_box(RunResult& result) const {
+  if (!result.ended_badly()) return;
+  result.records.push_back(runner_.black_box().write_csv(options_.black_box));
+  if (!result.records.back().whole()) return;
+  std::fprintf(stderr, "tenon-exec: the last second is in %s\n", options_.black_box.c_str());
+}
+
 int TaskRun::conclude(RunResult result) {
   result.arm_counters = named(arm_->counters());
+  result.bus = bus_->status();
   telemetry_.publish_summary(result, task_.record());
+  result.unpublished = telemetry_.failures();
+  result.records = close_records();
   print_closing(result);
-  if (result.ended_badly()) {
-    runner_.black_box().write_csv(options_.black_box);
-    std::fprintf(stderr, "tenon-exec: the last second is in %s\n", options_.black_box.c_str());
+  keep_black_box(result);
+  try {
+    write_json(options_.json, to_json(result, task_.cell()));
+  } catch (const std::exception& error) {
+    result.records.push_back({"json", options_.json, 0, 1, error.what()});
   }
-  write_json(options_.json, to_json(result, task_.cell()));
-  return result.exit_code;
+  const std::string losses = result.losses();
+  if (!losses.empty()) std::fprintf(stderr, "tenon-exec: lost: %s\n", losses.c_str());
+  return result.exit_status();
 }
 
 }  // namespace tenon::executor

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
 #include "executor/telemetry/telemetry.h"
+#include "executor/telemetry/trace.h"
 #include "shared/ports/can_bus.h"
 
 namespace tenon::hw {
@@ -30,10 +32,10 @@ class TaskRun {
  public:
   /// Opens the bus and whatever is written to. All arguments outlive it.
   /// @param steps of the plan that the task runs, null where it runs none
-  /// @param stop set by anyone to end the run in good order
+  /// @param stop set by anyone, and by signals from run() on, to end the run in good order
   /// @throws InputError where something cannot be opened
   TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
-          const std::atomic<bool>& stop);
+          std::atomic<bool>& stop);
   ~TaskRun();
   TaskRun(const TaskRun&) = delete;
   TaskRun& operator=(const TaskRun&) = delete;
@@ -49,16 +51,18 @@ class TaskRun {
   /// What the arm's fault was, for people.
   [[nodiscard]] std::string arm_fault_text() const;
 
-  /// Tells what came of it, everywhere. @return the exit status
+  /// Tells what came of it, everywhere, and at last what could not be told. @return the exit status
   int conclude(RunResult result);
 
  private:
   void run_arm();
+  [[nodiscard]] std::vector<RecordReport> close_records();
+  void keep_black_box(RunResult& result) const;
   [[nodiscard]] const Robot& robot() const { return task_.cell().robot; }
 
   const Options& options_;
   ControlTask& task_;
-  const std::atomic<bool>& stop_;
+  std::atomic<bool>& stop_;
   std::unique_ptr<CanBus> bus_;
   std::unique_ptr<CanLog> can_log_;
   std::unique_ptr<hw::RecordingBus> logged_bus_;
@@ -66,6 +70,7 @@ class TaskRun {
   std::unique_ptr<Recorder> recorder_;
   CycleRunner runner_;
   Telemetry telemetry_;
+  std::optional<TraceWriter> trace_;
 };
 
 }  // namespace tenon::executor

@@ -15,6 +15,7 @@
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/config/command_line.h"
+#include "shared/config/file_options.h"
 #include "shared/config/load.h"
 #include "sim/physics/rollout/ode_rollout.h"
 
@@ -159,6 +160,9 @@ void write_report(const Arguments& a, const Plan& plan, const std::vector<std::u
 }
 
 int run(const Arguments& a) {
+  check_apart(
+      {{"--json", a.json}, {"--report", a.report}},
+      {{"the plan", a.plan}, {"--task", a.task}, {"--recertify", a.recertify}, {"--cell", a.cell}});
   const Plan plan = load_plan(a.plan);
   const std::vector<std::uint8_t> bytes = bytes_of(a.plan);
   const Verdict verdict = a.recertify.empty() ? Verdict{} : recertify(a, plan, bytes);

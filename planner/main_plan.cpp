@@ -15,6 +15,7 @@
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/config/command_line.h"
+#include "shared/config/file_options.h"
 #include "shared/config/load.h"
 #include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
@@ -83,8 +84,8 @@ int run(const Arguments& a) {
     }
     task.time_limit_s = *a.time_limit_s;
   }
-  if (a.output == a.json)
-    throw InputError("--json: " + a.json + " is the plan's file: give another");
+  check_apart({{"--output", a.output}, {"--json", a.json}},
+              {{"the task", a.task}, {"--cell", a.cell}});
   check_writable(a.output);
   if (!a.json.empty() && a.json != "-") check_writable(a.json);
 

@@ -11,7 +11,9 @@
 #include "hw/bus_load/bus_load.h"
 #include "hw/bus_load/response_times.h"
 #include "shared/base/error.h"
+#include "shared/base/record_file.h"
 #include "shared/config/command_line.h"
+#include "shared/config/file_options.h"
 #include "shared/config/load.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/evaluation_html.h"
@@ -59,6 +61,7 @@ void make_runs(const EvaluateLine& line, const Cell& cell, sim::Evaluation& eval
 
 /// One run of each plan, told step by step.
 int replay(const EvaluateLine& line, const Cell& cell, const sim::Evaluation& evaluation) {
+  FinalFiles files;
   for (std::size_t plan = 0; plan < evaluation.candidates.size(); ++plan) {
     const sim::Candidate& candidate = evaluation.candidates[plan];
     const sim::Trial trial = evaluation.trial(plan, *line.only);
@@ -66,13 +69,15 @@ int replay(const EvaluateLine& line, const Cell& cell, const sim::Evaluation& ev
         "%s, run %zu: %.2f standard deviations off, seed %llu (tenon-sim makes the same world)\n",
         candidate.file.c_str(), trial.number, trial.distance,
         static_cast<unsigned long long>(trial.seed));
+    RecordReport black_box;
     const sim::TrialResult result =
-        sim::TrialRunner(cell, evaluation.task, candidate).tell(trial, line.black_box);
+        sim::TrialRunner(cell, evaluation.task, candidate).tell(trial, line.black_box, black_box);
     std::printf(
         "%s\n%s\n", to_string(classify(result)),
         sim::run_line(candidate.hash, {trial, result}, evaluation.ranges.has_value()).c_str());
+    if (!black_box.whole()) files.add_loss(loss_text(black_box));
   }
-  return 0;
+  return files.conclude("tenon-evaluate", 0);
 }
 
 void make_folder(const fs::path& folder) {
@@ -82,9 +87,9 @@ void make_folder(const fs::path& folder) {
   check_writable(folder / "x.svg");
 }
 
-void write_figures(const fs::path& folder, const sim::Evaluation& evaluation) {
+void write_figures(FinalFiles& files, const fs::path& folder, const sim::Evaluation& evaluation) {
   for (const sim::FigureFile& file : sim::figure_files(evaluation)) {
-    write_file(folder / file.name, file.svg);
+    files.write({"--figures", folder / file.name}, file.svg);
   }
 }
 
@@ -101,12 +106,13 @@ int evaluate(const EvaluateLine& line) {
   if (line.only) return replay(line, cell, evaluation);
   sim::check_bins(evaluation, line.count);
   make_runs(line, cell, evaluation);
-  if (!line.json.empty()) write_file(line.json, sim::evaluation_json(evaluation));
-  if (!line.report.empty()) write_file(line.report, sim::evaluation_html(evaluation));
-  if (!line.summary.empty()) write_file(line.summary, sim::summary_json(evaluation));
-  if (!line.figures.empty()) write_figures(line.figures, evaluation);
   std::fputs(sim::describe(evaluation).c_str(), stdout);
-  return 0;
+  FinalFiles files;
+  files.write({"--json", line.json}, sim::evaluation_json(evaluation));
+  files.write({"--report", line.report}, sim::evaluation_html(evaluation));
+  files.write({"--summary", line.summary}, sim::summary_json(evaluation));
+  if (!line.figures.empty()) write_figures(files, line.figures, evaluation);
+  return files.conclude("tenon-evaluate", 0);
 }
 
 // --- Command line -----------------------------------------------------------------------------
@@ -122,7 +128,7 @@ int parse_and_evaluate(int argc, char** argv) {
       "planner/tasks/box_on_table_2d.yaml \\\n                 --plan plan.tnp -n 1000 --seed 1 "
       "--threads 2 --json out.json --report out.html\n\n"
       "Run again, it goes on where it was stopped. Exit status: 0 all runs were made, however they "
-      "ended; 2 bad input.");
+      "ended; 1 not all of what was asked for could be written; 2 bad input.");
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--cell", line.cell, "cell file")->required();
   app.add_option("--task", line.task, "task file, or a variant of one: TASK.yaml#VARIANT")

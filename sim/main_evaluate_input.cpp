@@ -4,13 +4,13 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "shared/base/error.h"
 #include "shared/base/fnv.h"
 #include "shared/base/text.h"
 #include "shared/config/command_line.h"
+#include "shared/config/file_options.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/task/find_start.h"
@@ -32,18 +32,17 @@ std::string replay_of(const EvaluateLine& line) {
 }
 
 /// What is written, and every log that is read, must be a file of its own.
-void check_apart(const EvaluateLine& line) {
-  std::vector<std::string> files = line.merge;
-  for (const std::string& file :
-       {log_file_of(line), line.json, line.report, line.summary, line.black_box}) {
-    if (!file.empty()) files.push_back(file);
-  }
-  std::set<fs::path> known;
-  for (const std::string& file : files) {
-    if (known.insert(fs::weakly_canonical(fs::absolute(file))).second) continue;
-    throw InputError(file + ": is given for two files, or is the run log of --json; give each a " +
-                     "name of its own");
-  }
+void check_files(const EvaluateLine& line) {
+  std::vector<FileOption> written = {{"the run log", log_file_of(line)},
+                                     {"--json", line.json},
+                                     {"--report", line.report},
+                                     {"--summary", line.summary},
+                                     {"--black-box", line.black_box}};
+  for (const std::string& log : line.merge) written.push_back({"--merge", log});
+  std::vector<FileOption> read = {
+      {"--cell", line.cell}, {"--task", line.task}, {"--experiment", line.experiment}};
+  for (const std::string& plan : line.plans) read.push_back({"--plan", plan});
+  check_apart(written, read);
 }
 
 void check_other(const EvaluateLine& line, const sim::Candidate& candidate,
@@ -83,7 +82,7 @@ std::string log_file_of(const EvaluateLine& line) {
 }
 
 void check_options(const EvaluateLine& line) {
-  check_apart(line);
+  check_files(line);
   if (!line.black_box.empty() && line.plans.size() != 1) {
     throw InputError("--black-box " + line.black_box + ": holds one run; give one --plan");
   }

@@ -18,6 +18,7 @@
 #include "hw/can/slcan_server.h"
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
+#include "shared/config/file_options.h"
 #include "shared/config/load.h"
 #include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
@@ -126,6 +127,8 @@ void write_data_sheets(const std::filesystem::path& folder, const Robot& robot) 
 }
 
 int simulate(const CommandLine& line) {
+  check_apart({{"--json", line.json}, {"--ready-file", line.ready_file}},
+              {{"--cell", line.cell}, {"--task", line.task}, {"--experiment", line.experiment}});
   const Cell cell_file = load_cell(line.cell);
   if (!line.eds.empty()) write_data_sheets(line.eds, cell_file.robot);
   const Task task = load_task(line.task);
@@ -159,15 +162,17 @@ int simulate(const CommandLine& line) {
   truth.wakes = lateness.wakes;
   truth.wakes_late = lateness.late;
   truth.late_max_ms = static_cast<double>(lateness.max_ns) * 1e-6;
-  if (!line.json.empty()) write_file(line.json, sim::truth_json(truth));
+  truth.frames_lost = bus->status().send_failures;
   std::fputs(sim::describe(truth).c_str(), stdout);
   std::printf("simulated %.1f s; woke late by more than 1 ms %llu of %llu times, worst %.2f ms\n",
               truth.time_s, static_cast<unsigned long long>(truth.wakes_late),
               static_cast<unsigned long long>(truth.wakes), truth.late_max_ms);
-  if (truth.solver_messages == 0) return 0;
+  FinalFiles files;
+  files.write({"--json", line.json}, sim::truth_json(truth));
+  if (truth.solver_messages == 0) return files.conclude("tenon-sim", 0);
   std::fprintf(stderr, "tenon-sim: the physics solver gave up %llu times; do not trust this run\n",
                static_cast<unsigned long long>(truth.solver_messages));
-  return 1;
+  return files.conclude("tenon-sim", 1);
 }
 
 void stop(int /*signal*/) { stop_requested = 1; }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
+#include <sstream>
 
 #include "executor/states/ending.h"
 #include "shared/base/error.h"
@@ -64,13 +64,23 @@ const CycleRecord& BlackBox::at(std::size_t i) const {
   return records_[(count_ - size() + i) % records_.size()];
 }
 
-void BlackBox::write_csv(const std::filesystem::path& file) const {
-  std::ofstream out(file);
-  out.precision(12);
-  write_header(out);
-  for (std::size_t i = 0; i < size(); ++i) write_record(out, at(i));
-  out.flush();
-  if (!out) throw InputError(file.string() + ": cannot be written");
+RecordReport BlackBox::write_csv(const std::filesystem::path& file) const {
+  try {
+    RecordFile box("black_box", file);
+    std::ostringstream heading;
+    write_header(heading);
+    box.add(heading.str(), 0);
+    for (std::size_t i = 0; i < size(); ++i) {
+      std::ostringstream line;
+      line.precision(12);
+      write_record(line, at(i));
+      box.add(line.str());
+    }
+    box.close();
+    return box.report();
+  } catch (const InputError& error) {
+    return {"black_box", file.string(), 0, size(), error.what()};
+  }
 }
 
 }  // namespace tenon::executor

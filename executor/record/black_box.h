@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "executor/record/cycle_record.h"
+#include "shared/base/record_file.h"
 
 namespace tenon::executor {
 
@@ -24,9 +25,9 @@ class BlackBox {
   /// @param i 0 is the oldest that is kept
   [[nodiscard]] const CycleRecord& at(std::size_t i) const;
 
-  /// One line a cycle under a line of column names with units. Not for real time.
-  /// @throws InputError where the file cannot be written
-  void write_csv(const std::filesystem::path& file) const;
+  /// One line a cycle under a line of column names with units. Not for real time; throws nothing
+  /// about the file: what was lost stands in the report.
+  [[nodiscard]] RecordReport write_csv(const std::filesystem::path& file) const;
 
  private:
   std::vector<CycleRecord> records_;

@@ -1,5 +1,6 @@
 #include "executor/telemetry/run_result.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -76,6 +77,23 @@ Json json_of(const Finding& finding) {
   return json;
 }
 
+Json json_of(const RecordReport& report) {
+  return {{"name", report.name},
+          {"file", report.file},
+          {"written", report.written},
+          {"lost", report.lost},
+          {"reason", report.reason}};
+}
+
+Json json_of(const CanBusStatus& bus) {
+  return {{"sent", bus.sent},
+          {"received", bus.received},
+          {"send_failures", bus.send_failures},
+          {"malformed", bus.malformed},
+          {"error_frames", bus.error_frames},
+          {"overruns", bus.overruns}};
+}
+
 // What a run of a plan and an identification have in common. @param plan whose names messages use
 RunResult common_result(const ControlTask& task, const Plan& plan, const CycleRunner& runner,
                         std::uint64_t records_dropped, const std::string& arm_fault_text) {
@@ -108,6 +126,28 @@ bool RunResult::ended_badly() const {
   return exit_code != 0 && reason != EndReason::kStopRequested && !(orderly && disable_confirmed);
 }
 
+int RunResult::exit_status() const {
+  const bool whole = std::all_of(records.begin(), records.end(),
+                                 [](const RecordReport& report) { return report.whole(); });
+  return exit_code == 0 && !whole ? 1 : exit_code;
+}
+
+std::string RunResult::losses() const {
+  std::vector<std::string> all;
+  for (const RecordReport& report : records) {
+    if (!report.whole()) all.push_back(loss_text(report));
+  }
+  const auto tell = [&](std::uint64_t count, const char* what) {
+    if (count > 0) all.push_back(std::to_string(count) + " " + what);
+  };
+  tell(unpublished, "messages not published");
+  tell(bus.send_failures, "CAN frames not sent");
+  tell(bus.overruns, "CAN frames lost on receiving");
+  std::string text;
+  for (const std::string& one : all) text += (text.empty() ? "" : "; ") + one;
+  return text;
+}
+
 RunResult gather_result(const Controller& controller, const CycleRunner& runner,
                         std::uint64_t records_dropped, const std::string& arm_fault_text) {
   const Plan& plan = controller.plan();
@@ -135,7 +175,7 @@ std::string to_json(const RunResult& result, const Cell& cell) {
   Json json = {{"status", result.exit_code == 0 ? "done" : "failed"},
                {"reason", to_string(result.reason)},
                {"message", result.message},
-               {"exit_code", result.exit_code},
+               {"exit_code", result.exit_status()},
                {"disable_confirmed", result.disable_confirmed},
                {"task", result.task},
                {"start", result.start},
@@ -156,6 +196,10 @@ std::string to_json(const RunResult& result, const Cell& cell) {
                    {"records_dropped", result.records_dropped}};
   json["arm"] = Json::object();
   for (const auto& [name, count] : result.arm_counters) json["arm"][name] = count;
+  json["bus"] = json_of(result.bus);
+  json["unpublished"] = result.unpublished;
+  json["records"] = Json::array();
+  for (const RecordReport& report : result.records) json["records"].push_back(json_of(report));
   return json.dump(2) + "\n";
 }
 

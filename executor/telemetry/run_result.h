@@ -10,6 +10,8 @@
 #include "executor/identification/finding.h"
 #include "executor/loop/controller.h"
 #include "executor/loop/cycle_runner.h"
+#include "shared/base/record_file.h"
+#include "shared/ports/can_bus.h"
 
 namespace tenon::executor {
 
@@ -30,9 +32,17 @@ struct RunResult {
   double cycle_s = 0.0;
   /// What the arm's side of the bus has counted, by name.
   std::vector<std::pair<std::string, std::uint64_t>> arm_counters;
+  /// What the transport knows. Of frames that it took, an adapter may drop some later.
+  CanBusStatus bus;
+  std::uint64_t unpublished = 0;      ///< messages that LCM could not send
+  std::vector<RecordReport> records;  ///< of every file that was written along
 
   /// It went wrong in a way that the last cycles may explain: neither as it should, nor on request.
   [[nodiscard]] bool ended_badly() const;
+  /// Of the program: the arm's work may be done, and what was asked for along with it not be whole.
+  [[nodiscard]] int exit_status() const;
+  /// All that was lost, in one line; empty where nothing was.
+  [[nodiscard]] std::string losses() const;
 };
 
 /// Allocates; after the loop has ended. @param arm_fault_text see describe(Ending)

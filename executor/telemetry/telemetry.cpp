@@ -21,16 +21,15 @@ void fill(const PoseData& pose, double (&position_m)[3], double (&orientation_wx
 
 }  // namespace
 
-std::vector<std::shared_ptr<lcm::LCM>> open_telemetry(const std::string& url,
-                                                      const std::filesystem::path& log,
-                                                      std::vector<std::string>& warnings) {
-  std::vector<std::shared_ptr<lcm::LCM>> outputs;
+TelemetryOutputs open_telemetry(const std::string& url, const std::filesystem::path& log,
+                                std::vector<std::string>& warnings) {
+  TelemetryOutputs outputs;
   if (url != "none") {
     check_lcm_url(url);
     const bool routed = has_multicast_route(url);
     auto network = routed ? std::make_shared<lcm::LCM>(url) : nullptr;
     if (network != nullptr && network->good()) {
-      outputs.push_back(std::move(network));
+      outputs.network = std::move(network);
     } else {
       warnings.push_back("telemetry: " +
                          (routed
@@ -39,29 +38,34 @@ std::vector<std::shared_ptr<lcm::LCM>> open_telemetry(const std::string& url,
                          "; nothing is published" + (log.empty() ? "" : " but the log is written"));
     }
   }
-  if (!log.empty()) {
-    auto file = std::make_shared<lcm::LCM>("file://" + log.string() + "?mode=w");
-    if (!file->good()) throw InputError(log.string() + ": the log cannot be written");
-    outputs.push_back(std::move(file));
-  }
+  if (!log.empty()) outputs.log = std::make_unique<EventLog>(log);
   return outputs;
 }
 
-Telemetry::Telemetry(std::vector<std::shared_ptr<lcm::LCM>> outputs, std::size_t joint_count,
-                     const PlanRunner* steps, const Recorder& recorder)
+Telemetry::Telemetry(TelemetryOutputs outputs, std::size_t joint_count, const PlanRunner* steps,
+                     const Recorder& recorder)
     : outputs_(std::move(outputs)), joint_count_(joint_count), steps_(steps), recorder_(recorder) {}
 
 template <typename Message>
 void Telemetry::publish(const char* channel, const Message& message) {
-  for (const auto& output : outputs_) {
-    if (output->publish(channel, &message) != 0) ++failures_;
-  }
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  if (outputs_.log != nullptr) outputs_.log->add(message.utime, channel, bytes);
+  if (outputs_.network == nullptr) return;
+  const auto size = static_cast<unsigned>(bytes.size());
+  if (outputs_.network->publish(channel, bytes.data(), size) != 0) ++failures_;
 }
 
 void Telemetry::consume(const CycleRecord& record) {
   publish_cycle(record);
   while (steps_ != nullptr && steps_published_ < record.steps_done)
     publish_step(record, steps_published_++);
+}
+
+const RecordReport* Telemetry::close_log() {
+  if (outputs_.log == nullptr) return nullptr;
+  outputs_.log->close();
+  return &outputs_.log->report();
 }
 
 void Telemetry::publish_cycle(const CycleRecord& record) {

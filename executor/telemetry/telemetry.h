@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "executor/motion/plan_runner.h"
+#include "executor/telemetry/event_log.h"
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
 
@@ -24,24 +25,33 @@ inline constexpr const char* kCycleChannel = "TENON_CYCLE";
 inline constexpr const char* kStepChannel = "TENON_STEP";
 inline constexpr const char* kRunChannel = "TENON_RUN";
 
-/// Opens where telemetry goes to. What cannot be opened is left out and said in `warnings`, but for
-/// the log. @throws InputError where that cannot be written, or the URL is none (lcm_url.h).
+/// Where telemetry goes to; either may be missing.
+struct TelemetryOutputs {
+  std::shared_ptr<lcm::LCM> network;
+  std::unique_ptr<EventLog> log;
+};
+
+/// A network that cannot be opened is left out and said in `warnings`.
+/// @throws InputError where the log cannot be written, or the URL is none (lcm_url.h).
 /// @param url an LCM URL, or "none"  @param log a file for lcm-logplayer, or empty
-[[nodiscard]] std::vector<std::shared_ptr<lcm::LCM>> open_telemetry(
-    const std::string& url, const std::filesystem::path& log, std::vector<std::string>& warnings);
+[[nodiscard]] TelemetryOutputs open_telemetry(const std::string& url,
+                                              const std::filesystem::path& log,
+                                              std::vector<std::string>& warnings);
 
 class Telemetry : public RecordConsumer {
  public:
   /// @param steps of the plan that runs, null where none does  @param recorder whose losses are
   /// told; both outlive this
-  Telemetry(std::vector<std::shared_ptr<lcm::LCM>> outputs, std::size_t joint_count,
-            const PlanRunner* steps, const Recorder& recorder);
+  Telemetry(TelemetryOutputs outputs, std::size_t joint_count, const PlanRunner* steps,
+            const Recorder& recorder);
 
   void consume(const CycleRecord& record) override;
   void publish_summary(const RunResult& result, const CycleRecord& last);
 
   /// Messages that LCM could not send.
   [[nodiscard]] std::uint64_t failures() const { return failures_; }
+  /// The log, closed; null where there is none.
+  [[nodiscard]] const RecordReport* close_log();
 
  private:
   void publish_cycle(const CycleRecord& record);
@@ -49,7 +59,7 @@ class Telemetry : public RecordConsumer {
   template <typename Message>
   void publish(const char* channel, const Message& message);
 
-  std::vector<std::shared_ptr<lcm::LCM>> outputs_;
+  TelemetryOutputs outputs_;
   std::size_t joint_count_;
   const PlanRunner* steps_;
   const Recorder& recorder_;

@@ -1,6 +1,7 @@
 #include "executor/telemetry/trace.h"
 
 #include <charconv>
+#include <fstream>
 #include <sstream>
 #include <string>
 
@@ -34,6 +35,17 @@ void write_move(std::ostream& out, const CycleRecord& record, const Plan& plan) 
   MoveParameters move = tenon::move_parameters(plan, static_cast<std::size_t>(record.step));
   out << "m " << record.step << ' ' << record.signature_before << ' ' << move.timeout_us;
   for (const double* value : values_of(move.speeds)) write_double(out, *value);
+  out << '\n';
+}
+
+void write_input(std::ostream& out, const CycleRecord& record) {
+  out << "i " << record.motion_ns;
+  write_doubles(out, record.pose.position_m);
+  write_doubles(out, record.pose.orientation_wxyz);
+  write_doubles(out, record.wrench);
+  out << ' ' << (record.wrench_fresh ? 1 : 0);
+  write_doubles(out, record.setpoint.position_m);
+  write_doubles(out, record.setpoint.orientation_wxyz);
   out << '\n';
 }
 
@@ -116,30 +128,27 @@ void read_result(Words& words, const std::string& where, std::vector<TracedMove>
 }  // namespace
 
 TraceWriter::TraceWriter(const std::filesystem::path& file, const PlanRunner& runner)
-    : out_(file), runner_(runner) {
-  out_ << kFirstLine << '\n';
-  if (!out_) throw InputError(file.string() + ": cannot be written");
+    : file_("trace", file), runner_(runner) {
+  file_.add(std::string(kFirstLine) + '\n', 0);
 }
 
 void TraceWriter::consume(const CycleRecord& record) {
-  if (last_sequence_ && record.sequence != *last_sequence_ + 1) out_ << "g\n";
+  if (last_sequence_ && record.sequence != *last_sequence_ + 1) file_.add("g\n", 0);
   last_sequence_ = record.sequence;
   if (record.moving) {
-    if (record.move_started) write_move(out_, record, runner_.plan());
-    out_ << "i " << record.motion_ns;
-    write_doubles(out_, record.pose.position_m);
-    write_doubles(out_, record.pose.orientation_wxyz);
-    write_doubles(out_, record.wrench);
-    out_ << ' ' << (record.wrench_fresh ? 1 : 0);
-    write_doubles(out_, record.setpoint.position_m);
-    write_doubles(out_, record.setpoint.orientation_wxyz);
-    out_ << '\n';
+    std::ostringstream out;
+    if (record.move_started) write_move(out, record, runner_.plan());
+    write_input(out, record);
+    file_.add(out.str());
   }
   for (; steps_written_ < record.steps_done; ++steps_written_) {
     const StepReport& report = runner_.report(steps_written_);
-    out_ << "r " << report.step << ' ' << static_cast<int>(report.result.outcome) << ' '
-         << report.result.signature.bits << ' ' << report.result.decided_ns << ' '
-         << report.result.duration_ns << std::endl;
+    std::ostringstream out;
+    out << "r " << report.step << ' ' << static_cast<int>(report.result.outcome) << ' '
+        << report.result.signature.bits << ' ' << report.result.decided_ns << ' '
+        << report.result.duration_ns << '\n';
+    file_.add(out.str());
+    file_.flush();
   }
 }
 

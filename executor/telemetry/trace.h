@@ -11,12 +11,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <vector>
 
 #include "executor/motion/plan_runner.h"
 #include "executor/telemetry/recorder.h"
+#include "shared/base/record_file.h"
 
 namespace tenon::executor {
 
@@ -26,9 +26,11 @@ class TraceWriter : public RecordConsumer {
   /// @throws InputError where the file cannot be written
   TraceWriter(const std::filesystem::path& file, const PlanRunner& runner);
   void consume(const CycleRecord& record) override;
+  void close() { file_.close(); }
+  [[nodiscard]] const RecordReport& report() const { return file_.report(); }
 
  private:
-  std::ofstream out_;
+  RecordFile file_;
   const PlanRunner& runner_;
   std::size_t steps_written_ = 0;
   std::optional<std::uint64_t> last_sequence_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "shared/base/error.h"
 #include "shared/base/text.h"
 
 namespace tenon::hw {
@@ -25,19 +24,22 @@ std::string candump_line(const ReceivedFrame& record, const std::string& interfa
 }
 
 CandumpLog::CandumpLog(const std::filesystem::path& file, std::string interface)
-    : stream_(file, std::ios::trunc), interface_(std::move(interface)) {
-  if (!stream_) {
-    throw InputError("CAN log " + file.string() +
-                     ": cannot be written; check the folder and its permissions");
-  }
-}
+    : file_("can_log", file), interface_(std::move(interface)) {}
 
 void CandumpLog::drain(CanRecordRing& ring) {
   ReceivedFrame record;
   while (ring.pop(record)) {
-    stream_ << candump_line(record, interface_) << '\n';
+    file_.add(candump_line(record, interface_) + '\n');
   }
-  stream_.flush();
+  file_.flush();
+}
+
+RecordReport CandumpLog::close(CanRecordRing& ring) {
+  drain(ring);
+  file_.close();
+  RecordReport report = file_.report();
+  if (ring.dropped() > 0) report.lose(ring.dropped(), "written too slowly");
+  return report;
 }
 
 }  // namespace tenon::hw

@@ -7,10 +7,10 @@
 // Not real-time (files, strings): belongs to the thread that empties the ring.
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "hw/can/recording_bus.h"
+#include "shared/base/record_file.h"
 #include "shared/ports/can_bus.h"
 
 namespace tenon::hw {
@@ -25,12 +25,11 @@ class CandumpLog {
 
   /// Writes everything that the ring holds and hands it to the system.
   void drain(CanRecordRing& ring);
-
-  /// False once a write has failed (disk full).
-  [[nodiscard]] bool good() const { return stream_.good(); }
+  /// The last time. What the ring has lost is lost to the log.
+  [[nodiscard]] RecordReport close(CanRecordRing& ring);
 
  private:
-  std::ofstream stream_;
+  RecordFile file_;
   std::string interface_;
 };
 

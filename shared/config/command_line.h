@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "shared/base/error.h"
+#include "shared/config/signals.h"
 
 namespace tenon {
 
@@ -24,11 +25,19 @@ inline void parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
+/// What was printed has arrived; else said, and no success.
+inline int with_output(const char* program, int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  std::fprintf(stderr, "%s: standard output could not be written whole\n", program);
+  return status == 0 ? 1 : status;
+}
+
 /// The exit status of `work()`, or of what it threw.
 template <typename Work>
 int run_main(const char* program, const Work& work) noexcept {
   try {
-    return work();
+    survive_full_disks();
+    return with_output(program, work());
   } catch (const CommandLineAnswered&) {
     return 0;
   } catch (const InputError& error) {

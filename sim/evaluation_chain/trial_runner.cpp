@@ -52,12 +52,13 @@ TrialResult TrialRunner::run(const Trial& trial) const {
   return execute(*prepared_, trial, {}, [](const TrialChain&) {});
 }
 
-TrialResult TrialRunner::tell(const Trial& trial, const std::string& black_box) const {
+TrialResult TrialRunner::tell(const Trial& trial, const std::string& black_box,
+                              RecordReport& written) const {
   executor::CycleRunner::Parameters loop;
   loop.black_box_s = kToldCycles_s;
   return execute(*prepared_, trial, loop, [&](const TrialChain& chain) {
     chain.print();
-    if (!black_box.empty()) chain.black_box().write_csv(black_box);
+    if (!black_box.empty()) written = chain.black_box().write_csv(black_box);
   });
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "shared/base/record_file.h"
 #include "shared/cell/cell.h"
 #include "shared/task/task.h"
 #include "sim/evaluation/evaluation.h"
@@ -23,7 +24,8 @@ class TrialRunner {
   [[nodiscard]] TrialResult run(const Trial& trial) const;
   /// The same, and prints what happened step by step.
   /// @param black_box CSV file for the last minute of cycles; empty: none
-  TrialResult tell(const Trial& trial, const std::string& black_box) const;
+  /// @param written what became of that file
+  TrialResult tell(const Trial& trial, const std::string& black_box, RecordReport& written) const;
 
  private:
   std::shared_ptr<const PreparedPlan> prepared_;

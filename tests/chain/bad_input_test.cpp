@@ -124,6 +124,35 @@ TEST(BadInput, OfTheExecutorIsOneLineAndStatusTwo) {
   for (const BadInput& bad : table) expect_refused(folder, bad);
 }
 
+// What is written would destroy what is read, or what another option writes.
+TEST(BadInput, OneFileForTwoOptionsIsRefusedBeforeAnythingMoves) {
+  const ScratchFolder folder;
+  const std::string plan = put_box_plan(folder, "4");
+  const std::string same = folder.path() / "run.x";
+  const std::string link = folder.path() / "link";
+  std::filesystem::create_symlink("run.x", link);
+  const std::string planner = executable("tenon-plan");
+  const auto with = [](std::vector<std::string> command, const std::vector<std::string>& more) {
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  };
+  const std::vector<std::string> exec = execute(gantry_cell_file(), plan, kNobody);
+  const std::vector<std::string> sim = {
+      executable("tenon-sim"), "--cell", gantry_cell_file(),          "--task",
+      box_task_file(),         "--can",  "slcan-listen://127.0.0.1:0"};
+  const std::vector<BadInput> table = {
+      {with(exec, {"--log", same, "--json", same}), {"--log", "--json", same}},
+      {with(exec, {"--can-log", same, "--trace", link}), {"--can-log", "--trace", "run.x"}},
+      {with(exec, {"--json", folder.path() / "start_4.tnp"}), {"--plan", "--json"}},
+      {with(exec, {"--dry-run", "--json", plan}), {"--plan", "--json"}},
+      {with(sim, {"--json", same, "--ready-file", same}), {"--json", "--ready-file"}},
+      {{planner, box_task_file(), "-o", same, "--json", link}, {"--output", "--json"}},
+      {{executable("tenon-inspect"), plan, "--json", plan}, {"--json", "plan"}},
+  };
+  for (const BadInput& bad : table) expect_refused(folder, bad);
+  EXPECT_FALSE(std::filesystem::exists(same));
+}
+
 TEST(BadInput, ACellThatThePlanDoesNotFitIsNamedWithBothNumbers) {
   const ScratchFolder folder;
   const std::string plan = put_box_plan(folder, "4");

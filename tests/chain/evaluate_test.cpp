@@ -107,6 +107,24 @@ TEST_F(Evaluate, TheBlackBoxHoldsEveryCycleOfTheRunThatIsTold) {
   EXPECT_GT(cycles, 1000);
 }
 
+TEST_F(Evaluate, WhatAFullDiskTookIsNamedAndNoSuccess) {
+  make_whole();
+  const auto on_a_full_disk = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = command(more);
+    all.insert(all.begin(), {"prlimit", "--fsize=6000:6000"});
+    return run(folder, all);
+  };
+  const Ended made = on_a_full_disk(
+      {"--runs", path("whole.jsonl"), "--report", path("out.html"), "--summary", path("out.json")});
+  EXPECT_EQ(made.status, 1);
+  EXPECT_EQ(made.err, "tenon-evaluate: lost: --report " + path("out.html") +
+                          ": cannot be written: File too large\n");
+  EXPECT_FALSE(folder.get("out.json").empty());
+  const Ended told = on_a_full_disk({"--only", "0", "--black-box", path("run.csv")});
+  EXPECT_EQ(told.status, 1);
+  EXPECT_NE(told.err.find("lost: --black-box " + path("run.csv")), std::string::npos) << told.err;
+}
+
 TEST_F(Evaluate, BadUsageOfTheBlackBoxIsOneLineAndExitsTwo) {
   const std::string csv = path("bad.csv");
   const std::vector<std::pair<std::vector<std::string>, std::string>> bad = {

@@ -22,7 +22,7 @@ namespace tenon::executor {
 namespace {
 
 // Runs touch_and_slide_plan() and publishes it to the outputs, summary included.
-RunResult published_run(std::vector<std::shared_ptr<lcm::LCM>> outputs) {
+RunResult published_run(TelemetryOutputs outputs) {
   const auto recorder = std::make_unique<Recorder>();
   Bench bench(touch_and_slide_plan(), {}, hand_made_cell(), Vector3::Zero(), recorder.get());
   bench.arm.walls.push_back({0, +1, 0.13});
@@ -96,7 +96,7 @@ TEST(Telemetry, ASubscriberGetsWhatTheControllerDid) {
   Inbox inbox;
   queue->subscribeFunction(kCycleChannel, &Inbox::cycle, &inbox)->setQueueCapacity(0);
   queue->subscribeFunction(kStepChannel, &Inbox::step, &inbox)->setQueueCapacity(0);
-  const RunResult result = published_run({queue});
+  const RunResult result = published_run({queue, nullptr});
   while (queue->handleTimeout(0) > 0) {
   }
   EXPECT_EQ(inbox.cycles, result.statistics.cycles);
@@ -153,6 +153,28 @@ TEST(RunResult, TheJsonTellsStepsReasonAndCycle) {
   EXPECT_EQ(json.at("cycle").at("records_dropped"), 7);
   EXPECT_EQ(json.at("cycle").at("cycles"), result.statistics.cycles);
   EXPECT_EQ(json.at("arm").at("late_frames"), 3);
+}
+
+TEST(RunResult, WhatWasLostIsCountedAndNamedWhileTheArmsWorkIsDone) {
+  RunResult result;
+  result.exit_code = 0;
+  EXPECT_EQ(result.losses(), "");
+  EXPECT_EQ(result.exit_status(), 0);
+  result.bus.send_failures = 2;
+  result.unpublished = 5;
+  EXPECT_EQ(result.losses(), "5 messages not published; 2 CAN frames not sent");
+  EXPECT_EQ(result.exit_status(), 0);
+  result.records = {{"can_log", "a", 3, 0, ""}, {"log", "b", 3, 4, "No space left on device"}};
+  EXPECT_EQ(result.losses(),
+            "--log b: 4 of 7 records lost (No space left on device); 5 messages not published; "
+            "2 CAN frames not sent");
+  EXPECT_EQ(result.exit_status(), 1);
+  const auto json = nlohmann::json::parse(to_json(result, hand_made_cell()));
+  EXPECT_EQ(json.at("status"), "done");
+  EXPECT_EQ(json.at("exit_code"), 1);
+  EXPECT_EQ(json.at("bus").at("send_failures"), 2);
+  EXPECT_EQ(json.at("unpublished"), 5);
+  EXPECT_EQ(json.at("records")[1].at("lost"), 4);
 }
 
 TEST(RunResult, AnArmThatNeverDisabledIsNoSuccess) {

@@ -163,8 +163,9 @@ TEST(RecordingBus, EveryFrameThatPassedIsInTheLog) {
   const std::string file = testing::TempDir() + "tenon_candump_test.log";
   {
     CandumpLog log(file);
-    log.drain(*ring);
-    EXPECT_TRUE(log.good());
+    const RecordReport report = log.close(*ring);
+    EXPECT_TRUE(report.whole());
+    EXPECT_EQ(report.written, 2U);
   }
   std::stringstream text;
   text << std::ifstream(file).rdbuf();
@@ -184,6 +185,16 @@ TEST(RecordingBus, AFlushReachesTheBusBelow) {
   recording.flush();
   ASSERT_TRUE(receive_soon(*loopback.server, received));
   EXPECT_EQ(received.frame, frame_of(0x201, 7));
+}
+
+TEST(CandumpLog, WhatItsRingHasLostItTells) {
+  const auto ring = std::make_unique<CanRecordRing>();
+  for (std::size_t i = 0; i < CanRecordRing::capacity() + 3; ++i) ring->push({});
+  const std::string file = testing::TempDir() + "tenon_candump_loss_test.log";
+  const RecordReport report = CandumpLog(file).close(*ring);
+  EXPECT_EQ(loss_text(report),
+            "--can-log " + file + ": 3 of 32771 records lost (written too slowly)");
+  ::unlink(file.c_str());
 }
 
 }  // namespace

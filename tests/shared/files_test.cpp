@@ -3,41 +3,20 @@
 #include "shared/config/files.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-
-#include <csignal>
 
 #include "shared/config/load.h"
 #include "shared/plan/codec.h"
 #include "tests/shared/example_plans.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace tenon {
 namespace {
 
+using tests::FullDisk;
 using tests::refusal;
 using tests::ScratchFolder;
-
-// Writes beyond this many bytes fail as on a full disk, for as long as this lives.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    (void)std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
-};
 
 TEST(WriteFile, ReplacesTheFileAndLeavesNothingElse) {
   const ScratchFolder folder;

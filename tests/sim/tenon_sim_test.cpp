@@ -115,6 +115,20 @@ TEST_F(TenonSimTest, CarriesOutFaultsOfDevicesAndBus) {
   EXPECT_NE(truth["events"].dump().find("fault node-reset, node 2"), std::string::npos);
 }
 
+TEST_F(TenonSimTest, ATruthThatADiskDoesNotTakeIsNamedBehindWhatHappened) {
+  const std::string truth_file = folder.path() / "truth.json";
+  tests::ChildProcess child(
+      folder.path(), {"prlimit", "--fsize=1000:1000", tests::executable("tenon-sim"), "--cell",
+                      tests::gantry_cell_file(), "--task", tests::box_task_file(), "--can",
+                      "slcan-listen://127.0.0.1:0", "--json", truth_file});
+  ASSERT_TRUE(child.wait_until([&] { return child.out().find("listening") != std::string::npos; }));
+  child.send(SIGINT);
+  EXPECT_EQ(child.wait(), 1);
+  EXPECT_NE(child.out().find("the part ended"), std::string::npos) << child.out();
+  EXPECT_EQ(child.err(),
+            "tenon-sim: lost: --json " + truth_file + ": cannot be written: File too large\n");
+}
+
 TEST_F(TenonSimTest, ListsTheFaultsWithoutAnyOtherOption) {
   tests::ChildProcess child(folder.path(), {tests::executable("tenon-sim"), "--fault", "help"});
   EXPECT_EQ(child.wait(), 0);

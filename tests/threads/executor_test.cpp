@@ -34,7 +34,7 @@ CycleRunner::Parameters patient() {
   return parameters;
 }
 
-std::vector<std::shared_ptr<lcm::LCM>> log_to(const std::string& file) {
+TelemetryOutputs log_to(const std::string& file) {
   std::vector<std::string> warnings;
   return open_telemetry("none", file, warnings);
 }
@@ -83,7 +83,7 @@ class TwoThreads {
     const RunResult result = gather_result(controller_, runner_, recorder_->dropped(), "");
     telemetry_.publish_summary(result, controller_.record());
     EXPECT_EQ(telemetry_.failures(), 0U);
-    runner_.black_box().write_csv(file("box.csv"));
+    EXPECT_TRUE(runner_.black_box().write_csv(file("box.csv")).whole());
     return result;
   }
 

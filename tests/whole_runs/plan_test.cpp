@@ -58,7 +58,7 @@ TEST(WholePlan, RidesOutOneFaultOfEachKindAndEndsAtTheGoal) {
   telemetry.publish_summary(gathered, run.controller().record());
   EXPECT_EQ(telemetry.failures(), 0U);
   EXPECT_FALSE(executor::to_json(gathered, gantry_cell()).empty());
-  run.runner().black_box().write_csv(folder.path() / "black-box.csv");
+  EXPECT_TRUE(run.runner().black_box().write_csv(folder.path() / "black-box.csv").whole());
   EXPECT_GT(folder.get("black-box.csv").size(), 10'000U);
 }
 

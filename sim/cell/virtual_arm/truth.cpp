@@ -65,6 +65,7 @@ std::string truth_json(const Truth& truth) {
   json["faults"] = truth.faults;
   json["solver_messages"] = truth.solver_messages;
   json["frames_not_sent"] = truth.frames_not_sent;
+  json["frames_lost"] = truth.frames_lost;
   json["clock"] = {
       {"wakes", truth.wakes}, {"wakes_late", truth.wakes_late}, {"late_max_ms", truth.late_max_ms}};
   json["events"] = Json::array();

@@ -45,6 +45,7 @@ struct Truth {
   std::uint64_t solver_messages = 0;  ///< not 0: the physics is not to be believed
   std::uint64_t frames_not_sent = 0;
   // Where the cell runs on its own clock:
+  std::uint64_t frames_lost = 0;  ///< by clients that read too slowly, each on its own
   std::uint64_t wakes = 0;
   std::uint64_t wakes_late = 0;  ///< by more than a millisecond
   double late_max_ms = 0.0;

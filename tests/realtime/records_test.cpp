@@ -1,0 +1,107 @@
+// What a run leaves behind where the disk takes no more: the arm's work is done all the same, and
+// whoever asked for a record is told what is missing in it. Repeated once where the machine was too
+// busy for real time.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.h"
+#include "tests/support/commands.h"
+#include "tests/support/places.h"
+#include "tests/support/sim_process.h"
+
+namespace tenon::tests {
+namespace {
+
+// Holds the result, and no log of a run.
+constexpr const char* kFullDisk = "--fsize=40000:40000";
+
+// The plan for start 4, on a disk that is soon full.
+class RunOnAFullDisk {
+ public:
+  RunOnAFullDisk()
+      : sim_(folder_.path(), "4", {"--once"}),
+        exec_(folder_.path(), {"prlimit",
+                               kFullDisk,
+                               executable("tenon-exec"),
+                               "--cell",
+                               gantry_cell_file(),
+                               "--plan",
+                               put_box_plan(folder_, "4"),
+                               "--can",
+                               sim_.uri(),
+                               "--lcm-url",
+                               "none",
+                               "--log",
+                               folder_.path() / "log",
+                               "--can-log",
+                               folder_.path() / "candump",
+                               "--trace",
+                               folder_.path() / "trace",
+                               "--black-box",
+                               folder_.path() / "box.csv",
+                               "--json",
+                               folder_.path() / "result.json"}) {}
+
+  [[nodiscard]] ChildProcess& sim() { return sim_.process(); }
+  [[nodiscard]] ChildProcess& exec() { return exec_; }
+  [[nodiscard]] nlohmann::json result() const {
+    return nlohmann::json::parse(folder_.get("result.json"), nullptr, false);
+  }
+  [[nodiscard]] bool came_too_late() {
+    return exec_.wait() == 1 && result().is_object() && result().at("reason") == "overruns";
+  }
+  [[nodiscard]] std::string last_line() const {
+    std::string text = exec_.err();
+    if (text.ends_with('\n')) text.pop_back();
+    return text.substr(text.rfind('\n') + 1);
+  }
+
+ private:
+  ScratchFolder folder_;
+  SimProcess sim_;
+  ChildProcess exec_;
+};
+
+TEST(Records, ADiskThatIsFullIsCountedAndNamedAndTheArmsWorkIsDoneAllTheSame) {
+  auto run = std::make_unique<RunOnAFullDisk>();
+  if (run->came_too_late()) run = std::make_unique<RunOnAFullDisk>();
+  EXPECT_EQ(run->exec().wait(), 1) << run->exec().err();
+  const nlohmann::json result = run->result();
+  ASSERT_TRUE(result.is_object()) << run->exec().err();
+  EXPECT_EQ(result.at("status"), "done");
+  EXPECT_EQ(result.at("exit_code"), 1);
+  ASSERT_EQ(result.at("records").size(), 3U);
+  for (const nlohmann::json& record : result["records"]) {
+    EXPECT_GT(record.at("lost"), 0) << record;
+    EXPECT_GT(record.at("written"), 0) << record;
+    EXPECT_EQ(record.at("reason"), "File too large");
+  }
+  for (const char* option : {"--log", "--can-log", "--trace"}) {
+    EXPECT_NE(run->last_line().find(std::string(option) + " "), std::string::npos)
+        << run->last_line();
+  }
+}
+
+TEST(Records, ABlackBoxThatCannotBeWrittenTakesNothingWithIt) {
+  RunOnAFullDisk run;
+  ASSERT_TRUE(run.exec().wait_until([&] {
+    return run.exec().out().find("step  0:") != std::string::npos;
+  })) << run.exec().err();
+  run.sim().send(SIGKILL);
+  EXPECT_EQ(run.exec().wait(), 1) << run.exec().err();
+  const nlohmann::json result = run.result();
+  ASSERT_TRUE(result.is_object()) << run.exec().err();
+  EXPECT_EQ(result.at("status"), "failed");
+  EXPECT_EQ(result.at("records").back().at("name"), "black_box");
+  EXPECT_GT(result["records"].back().at("lost"), 0);
+  EXPECT_NE(run.last_line().find("--black-box "), std::string::npos) << run.last_line();
+}
+
+}  // namespace
+}  // namespace tenon::tests
