@@ -69,8 +69,7 @@ set(TENON_MAY_USE_tenon-plan     planner planner_report sim_physics shared_confi
 set(TENON_MAY_USE_tenon-inspect  planner planner_report sim_physics shared_config)
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
                                  executor_loop executor_telemetry hw_can hw_arm hw_load shared_config)
-set(TENON_MAY_USE_tenon-monitor  executor_states executor_telemetry
-                                 lcmtypes shared_config LCM::lcm)
+set(TENON_MAY_USE_tenon-monitor  executor_telemetry shared_config LCM::lcm)
 set(TENON_MAY_USE_tenon-sim      sim_cell hw_can shared_config)
 set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)
 set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 shared_config)

@@ -21,6 +21,7 @@
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
+#include "shared/config/signals.h"
 
 namespace tenon::executor {
 namespace {
@@ -64,7 +65,10 @@ int execute(const Options& options) {
   const Plan plan = options.identifies() ? Plan{} : load_plan(options.plan);
   hw::check_bus_load(cell.robot);
   hw::check_response_times(cell.robot);
-  if (options.identifies()) return identify(options, cell);
+  if (options.identifies()) {
+    stop_on_signals(stop_asked);
+    return identify(options, cell);
+  }
   DryRun run = dry_run(plan, cell);
   const std::vector<std::string> others = check_plan(plan, cell);
   run.refusals.insert(run.refusals.begin(), others.begin(), others.end());
@@ -74,6 +78,7 @@ int execute(const Options& options) {
                      "' cannot execute this plan: " + run.refusals.front());
   }
   if (options.dry_run) return 0;
+  stop_on_signals(stop_asked);
   print_opening(plan, cell, run);
   return run_plan(options, cell, run);
 }

@@ -14,7 +14,6 @@
 #include "hw/can/open_bus.h"
 #include "hw/can/recording_bus.h"
 #include "shared/base/error.h"
-#include "shared/config/signals.h"
 #include "shared/system/monotonic_clock.h"
 
 namespace tenon::executor {
@@ -74,7 +73,7 @@ std::vector<std::pair<std::string, std::uint64_t>> named(const hw::CanopenArm::C
 }  // namespace
 
 TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
-                 std::atomic<bool>& stop)
+                 const std::atomic<bool>& stop)
     : options_(options),
       task_(task),
       stop_(stop),
@@ -96,7 +95,6 @@ TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* st
 TaskRun::~TaskRun() = default;
 
 void TaskRun::run() {
-  stop_on_signals(stop_);
   recorder_->start();
   std::exception_ptr failure;
   std::thread real_time([&] {

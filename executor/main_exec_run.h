@@ -32,10 +32,10 @@ class TaskRun {
  public:
   /// Opens the bus and whatever is written to. All arguments outlive it.
   /// @param steps of the plan that the task runs, null where it runs none
-  /// @param stop set by anyone, and by signals from run() on, to end the run in good order
+  /// @param stop set by anyone to end the run in good order
   /// @throws InputError where something cannot be opened
   TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
-          std::atomic<bool>& stop);
+          const std::atomic<bool>& stop);
   ~TaskRun();
   TaskRun(const TaskRun&) = delete;
   TaskRun& operator=(const TaskRun&) = delete;
@@ -62,7 +62,7 @@ class TaskRun {
 
   const Options& options_;
   ControlTask& task_;
-  std::atomic<bool>& stop_;
+  const std::atomic<bool>& stop_;
   std::unique_ptr<CanBus> bus_;
   std::unique_ptr<CanLog> can_log_;
   std::unique_ptr<hw::RecordingBus> logged_bus_;

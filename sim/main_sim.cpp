@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <csignal>
+#include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -20,6 +20,7 @@
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
 #include "shared/config/load.h"
+#include "shared/config/signals.h"
 #include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
 #include "sim/cell/devices/robot_devices.h"
@@ -37,7 +38,7 @@ constexpr std::int64_t kTick_ns = 1'000'000;
 constexpr std::int64_t kLate_ns = 1'000'000;
 constexpr std::int64_t kSettled_ns = 1'000'000'000;
 
-volatile std::sig_atomic_t stop_requested = 0;
+std::atomic<bool> stop_requested{false};
 
 struct CommandLine {
   std::string cell;
@@ -84,7 +85,7 @@ Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer*
   Lateness lateness;
   OneClient one_client;
   std::int64_t due_ns = monotonic_now_ns();
-  while (stop_requested == 0) {
+  while (!stop_requested.load(std::memory_order_relaxed)) {
     const std::int64_t now_ns = monotonic_now_ns();
     if (now_ns >= due_ns) {
       lateness.count(now_ns - due_ns);
@@ -154,6 +155,7 @@ int simulate(const CommandLine& line) {
     throw InputError("--once: needs a bus with clients, such as --can slcan-listen://127.0.0.1:0");
   }
   raise_priority();
+  stop_on_signals(stop_requested);
   announce(line, *bus);
   sim::FaultyBus faulty_bus(*bus, options.faults, cell_file.robot.master_node, monotonic_now_ns());
   const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr);
@@ -174,8 +176,6 @@ int simulate(const CommandLine& line) {
                static_cast<unsigned long long>(truth.solver_messages));
   return files.conclude("tenon-sim", 1);
 }
-
-void stop(int /*signal*/) { stop_requested = 1; }
 
 void answer_help(const std::string& fault) {
   if (fault != "help") return;
@@ -217,8 +217,6 @@ int parse_and_simulate(int argc, char** argv) {
   app.add_option("--ready-file", line.ready_file, "file that appears when the bus is open");
   app.add_flag("--once", line.once, "end when the client has gone and the arm is at rest");
   parse(app, argc, argv);
-  std::signal(SIGINT, stop);
-  std::signal(SIGTERM, stop);
   return simulate(line);
 }
 

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 
 #include "shared/base/error.h"
+#include "shared/base/regular_file.h"
 #include "shared/system/descriptor.h"
 
 namespace tenon::executor {
@@ -99,6 +101,16 @@ void check_lcm_url(const std::string& url) {
   if (parts && parts->provider == "memq" && parts->network.empty()) return;
   throw InputError("--lcm-url " + url +
                    ": not an LCM URL; give udpm://ADDRESS:PORT?ttl=N, file://FILE or memq://");
+}
+
+void check_lcm_log(const std::string& url) {
+  const std::optional<Parts> parts = parts_of(url);
+  if (!parts || parts->provider != "file") return;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(parts->network, error)) return;
+  const bool other = is_other_than_a_file(parts->network);
+  throw InputError("--lcm-url " + url + ": " + parts->network +
+                   " cannot be read: " + (other ? kNoRegularFile : error.message()));
 }
 
 bool has_multicast_route(const std::string& url) {

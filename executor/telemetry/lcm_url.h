@@ -10,6 +10,10 @@ namespace tenon::executor {
 /// may be left out) and options that LCM has, file://PATH, or memq://
 void check_lcm_url(const std::string& url);
 
+/// What is to be replayed must be a log: LCM would look for one in a pipe or a device for ever.
+/// @throws InputError where such a URL names no regular file
+void check_lcm_log(const std::string& url);
+
 /// Whether the kernel knows a way to the multicast group of such a URL; true where it needs none.
 [[nodiscard]] bool has_multicast_route(const std::string& url);
 

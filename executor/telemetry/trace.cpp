@@ -1,11 +1,13 @@
 #include "executor/telemetry/trace.h"
 
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string>
 
 #include "shared/base/error.h"
+#include "shared/base/regular_file.h"
 
 namespace tenon::executor {
 namespace {
@@ -71,6 +73,7 @@ class Words {
     double value = 0.0;
     const auto end =
         std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::hex);
+    if (!std::isfinite(value)) throw InputError(where_ + ": '" + text + "' is not finite");
     return checked(value, text, end);
   }
   Pose pose() {
@@ -116,7 +119,12 @@ void read_result(Words& words, const std::string& where, std::vector<TracedMove>
   for (TracedMove& move : moves) {
     if (move.step != step) continue;
     move.complete = true;
-    move.outcome = static_cast<Outcome>(words.number<std::uint8_t>());
+    const auto outcome = words.number<std::size_t>();
+    if (outcome >= kOutcomes.size()) {
+      throw InputError(where + ": outcome " + std::to_string(outcome) + ", must be in [0, " +
+                       std::to_string(kOutcomes.size() - 1) + "]");
+    }
+    move.outcome = kOutcomes.at(outcome);
     move.signature.bits = words.number<std::uint16_t>();
     move.decided_ns = words.number<std::int64_t>();
     move.duration_ns = words.number<std::int64_t>();
@@ -160,6 +168,9 @@ MoveParameters move_parameters(const Plan& plan, const TracedMove& traced) {
 }
 
 std::vector<TracedMove> read_trace(const std::filesystem::path& file) {
+  if (is_other_than_a_file(file)) {
+    throw InputError(file.string() + ": cannot be read: " + kNoRegularFile);
+  }
   std::ifstream in(file);
   if (!in) throw InputError(file.string() + ": cannot be read");
   std::string line;

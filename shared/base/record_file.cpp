@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "shared/base/error.h"
+#include "shared/base/regular_file.h"
 
 namespace tenon {
 namespace {
@@ -13,11 +14,8 @@ namespace {
 constexpr std::size_t kFlush_bytes = 4096;
 
 std::FILE* opened(const std::filesystem::path& file) {
-  // Opening a pipe would wait for whoever reads it, and a device keeps nothing.
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw InputError(file.string() + ": cannot be written: it is not a regular file");
+  if (is_other_than_a_file(file)) {
+    throw InputError(file.string() + ": cannot be written: " + kNoRegularFile);
   }
   std::FILE* stream = std::fopen(file.c_str(), "we");
   if (stream == nullptr) {

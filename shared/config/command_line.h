@@ -44,7 +44,7 @@ int run_main(const char* program, const Work& work) noexcept {
     std::fprintf(stderr, "%s: %s\n", program, error.what());
     return 2;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    std::fprintf(stderr, "%s: %s\n", program, InputError(error.what()).what());
   } catch (...) {
     std::fprintf(stderr, "%s: stopped by something unknown\n", program);
   }

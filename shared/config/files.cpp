@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "shared/base/error.h"
+#include "shared/base/regular_file.h"
 #include "shared/config/load.h"
 #include "shared/system/descriptor.h"
 
@@ -33,7 +34,10 @@ int write_new(const std::filesystem::path& file, std::span<const std::uint8_t> b
 namespace config {
 
 std::string read_file(const std::filesystem::path& file) {
-  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (is_other_than_a_file(file)) {
+    throw InputError(file.string() + ": cannot be read: " + kNoRegularFile);
+  }
+  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!descriptor.is_open()) fail(file, "read", errno);
   std::string text;
   for (;;) {
@@ -52,10 +56,8 @@ std::string read_file(const std::filesystem::path& file) {
 
 void check_writable(const std::filesystem::path& file) {
   // A device or a folder would be replaced by the rename.
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw InputError(file.string() + ": cannot be written: it is not a regular file");
+  if (is_other_than_a_file(file)) {
+    throw InputError(file.string() + ": cannot be written: " + kNoRegularFile);
   }
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(file, "written", errno);

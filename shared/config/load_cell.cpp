@@ -48,7 +48,10 @@ std::vector<std::filesystem::path> cell_files(const std::filesystem::path& file)
   const auto cell = config::Value::parse(file, config::read_file(file));
   if (const auto robot = cell.peek("robot")) {
     const auto folder = (file.parent_path() / robot->text()).parent_path();
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::error_code error;
+    const std::filesystem::directory_iterator entries(folder, error);
+    if (error) robot->refuse_value("a file in a folder that can be read");
+    for (const auto& entry : entries) {
       if (entry.is_regular_file()) files.push_back(entry.path());
     }
   }

@@ -18,9 +18,13 @@ void ask_to_stop(int /*signal*/) {
 
 void stop_on_signals(std::atomic<bool>& stop) {
   asked.store(&stop, std::memory_order_relaxed);
+  struct sigaction action {};
+  action.sa_handler = &ask_to_stop;  // no SA_RESTART: a connection that is not made ends too
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    const auto before = std::signal(signal, &ask_to_stop);
-    if (signal == SIGHUP && before == SIG_IGN) (void)std::signal(signal, SIG_IGN);
+    struct sigaction before {};
+    (void)::sigaction(signal, &action, &before);
+    if (signal == SIGHUP && before.sa_handler == SIG_IGN)
+      (void)::sigaction(signal, &before, nullptr);
   }
 }
 

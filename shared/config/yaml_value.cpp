@@ -7,13 +7,16 @@
 #include <utility>
 
 #include "shared/base/error.h"
+#include "shared/base/printable.h"
 #include "shared/base/text.h"
+#include "shared/config/yaml_documents.h"
 
 namespace tenon::config {
 namespace {
 
 constexpr double kPositionMax_m = 100.0;
 constexpr double kRotationMax_rad = 3.1415926535897932;
+constexpr std::size_t kShownMax = 80;  // of a value or a key in a message, bytes
 
 const char* kind_of(const YAML::Node& node) {
   if (node.IsMap()) return "a mapping";
@@ -51,12 +54,12 @@ Value::Value(std::shared_ptr<const std::string> file, std::string path, const YA
 Value Value::parse(const std::filesystem::path& file, const std::string& text) {
   auto name = std::make_shared<const std::string>(file.string());
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() != 1) {
+    const int documents = yaml_documents(text);
+    if (documents != 1) {
       throw InputError(*name + ": must hold one YAML document, holds " +
-                       std::to_string(documents.size()));
+                       (documents == 0 ? "none" : "2 or more"));
     }
-    return {name, "", documents.front()};
+    return {name, "", YAML::Load(text)};
   } catch (const YAML::Exception& error) {
     throw InputError(*name + ":" + std::to_string(error.mark.line + 1) +
                      ": is not YAML: " + error.msg);
@@ -75,8 +78,8 @@ void Value::refuse(const std::string& what) const {
 }
 
 void Value::refuse_value(const std::string& must_be) const {
-  const std::string value =
-      node_.IsScalar() ? " = " + node_.Scalar() : " is " + std::string(kind_of(node_));
+  const std::string value = node_.IsScalar() ? " = " + shortened(node_.Scalar(), kShownMax)
+                                             : " is " + std::string(kind_of(node_));
   throw InputError(place() + value + ", must be " + must_be);
 }
 
@@ -193,7 +196,7 @@ std::vector<Value::Entry> Value::entries() const {
   std::vector<Entry> own;
   for (const auto& pair : node_) {
     const std::string key = pair.first.IsScalar() ? pair.first.Scalar() : "?";
-    const std::string path = (path_.empty() ? "" : path_ + ".") + key;
+    const std::string path = (path_.empty() ? "" : path_ + ".") + shortened(key, kShownMax);
     const Value key_value(file_, path, pair.first);
     if (given(own, key) != own.end()) key_value.refuse("is given twice");
     // An empty value is refused by whoever reads it, at the line of its key.

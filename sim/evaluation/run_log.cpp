@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "shared/base/error.h"
+#include "shared/base/regular_file.h"
 
 namespace tenon::sim {
 namespace {
@@ -21,6 +22,7 @@ namespace {
 }
 
 std::string text_of(const std::filesystem::path& file) {
+  if (is_other_than_a_file(file)) fail(file, std::string("cannot be read: ") + kNoRegularFile);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) fail(file, std::string("cannot be read: ") + std::strerror(errno));
   std::ostringstream text;
@@ -57,7 +59,9 @@ std::vector<std::string> runs_of(const std::filesystem::path& file, const Lines&
 
 RunLog::RunLog(const std::filesystem::path& file, const std::string& identity)
     : file_(file),
-      descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666)) {
+      descriptor_(
+          ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0666)) {
+  if (is_other_than_a_file(file)) fail(file, std::string("cannot be opened: ") + kNoRegularFile);
   if (!descriptor_.is_open()) fail(file, std::string("cannot be opened: ") + std::strerror(errno));
   if (::flock(descriptor_.get(), LOCK_EX | LOCK_NB) != 0) {
     fail(file, "another tenon-evaluate is writing to it; wait for it or give another file");

@@ -3,6 +3,7 @@
 #include "tests/support/bad_input.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -151,6 +152,31 @@ TEST(BadInput, OneFileForTwoOptionsIsRefusedBeforeAnythingMoves) {
   };
   for (const BadInput& bad : table) expect_refused(folder, bad);
   EXPECT_FALSE(std::filesystem::exists(same));
+}
+
+// Opening a pipe would wait for whoever writes into it.
+TEST(BadInput, APipeADeviceOrAFolderWhereAFileIsReadIsRefusedWithoutWaiting) {
+  const ScratchFolder folder;
+  const std::string plan = put_box_plan(folder, "4");
+  const std::string pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::string cell = gantry_cell_file();
+  for (const std::string& other : {pipe, std::string("/dev/zero"), folder.path().string()}) {
+    const std::vector<BadInput> table = {
+        {execute(other, plan, kNobody), {other, "not a regular file"}},
+        {execute(cell, other, kNobody), {other, "not a regular file"}},
+        {{executable("tenon-plan"), other, "-o", folder.path() / "never.tnp"},
+         {other, "not a regular file"}},
+        {{executable("tenon-inspect"), other}, {other, "not a regular file"}},
+        {{executable("tenon-evaluate"), "--cell", cell, "--task", box_task_file(), "--plan", plan,
+          "--seed", "1", "-n", "1", "--runs", other},
+         {other, "not a regular file"}},
+        {{executable("tenon-evaluate"), "--cell", cell, "--task", box_task_file(), "--plan", plan,
+          "--seed", "1", "-n", "1", "--experiment", other},
+         {other, "not a regular file"}},
+    };
+    for (const BadInput& bad : table) expect_refused(folder, bad);
+  }
 }
 
 TEST(BadInput, ACellThatThePlanDoesNotFitIsNamedWithBothNumbers) {

@@ -53,7 +53,7 @@ MAY_INCLUDE = {
     "tenon-exec": LOOP | HW_ARM | {"shared_config", "shared_system", "executor", "executor_loop",
                                    "executor_identification", "executor_telemetry", "hw_can", "hw_arm", "hw_load"},
     "tenon-monitor": LOOP | {"shared_config", "executor_loop", "executor_identification",
-                             "executor_telemetry", "lcmtypes"},
+                             "executor_telemetry"},
     "tenon-sim": {"shared", "shared_config", "shared_system", "sim_cell", "hw_can"},
     "tenon-evaluate": HW_ARM | {"shared_config", "shared_system", "sim_evaluation_chain", "sim_evaluation",
                                 "sim_cell", "hw_arm", "hw_load"},

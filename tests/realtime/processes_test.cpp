@@ -202,9 +202,13 @@ TEST_F(ProcessesTest, ARunReachesTheGoalAndItsLogsCanBeReadAndPlayed) {
   EXPECT_NE(played.out.find(executor::kRunChannel), std::string::npos);
 }
 
-TEST_F(ProcessesTest, CtrlCInMidMotionStopsTheArmAndSaysSo) {
+class StopSignal : public ProcessesTest, public ::testing::WithParamInterface<int> {};
+
+INSTANTIATE_TEST_SUITE_P(Each, StopSignal, ::testing::Values(SIGINT, SIGTERM, SIGHUP));
+
+TEST_P(StopSignal, InMidMotionStopsTheArmAndSaysSo) {
   ASSERT_NE(begin_moving(), nullptr) << processes->exec().err();
-  processes->exec().send(SIGINT);
+  processes->exec().send(GetParam());
   EXPECT_EQ(processes->exec().wait(), 1);
   EXPECT_EQ(processes->sim().wait(), 0);
   const nlohmann::json result = processes->result();

@@ -204,7 +204,7 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
        ":25: physics.rollout_step_s = 0.006, must be in [0.0001, 0.005]"},
       {"coordinates: [x, rz]", "coordinates: [x, rz",
        ":3: is not YAML: end of sequence flow not found"},
-      {"physics:\n", "---\n", ": must hold one YAML document, holds 2"},
+      {"physics:\n", "---\n", ": must hold one YAML document, holds 2 or more"},
   };
   expect_refusals(kTinyTask, lines,
                   [](const std::filesystem::path& file) { (void)load_task(file); });

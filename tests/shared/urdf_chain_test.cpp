@@ -162,6 +162,19 @@ TEST(UrdfChain, HoldsOneToSevenMovingJoints) {
   }
 }
 
+// The parser would descend until the stack ends.
+TEST(UrdfChain, ElementsWithoutBottomAreRefusedByTheirDepth) {
+  const ScratchFolder folder;
+  std::string deep = "<robot name=\"r\"><!-- <a> --><a b='>'/>";
+  for (int i = 0; i < 200'000; ++i) deep += "<a>";
+  const auto file = folder.put("deep.urdf", deep);
+  EXPECT_EQ(refusal([&] { (void)config::read_urdf(file); }),
+            file.string() + ": has elements 200001 deep in each other, must be at most 64");
+  const auto large = folder.put("large.urdf", std::string(1'100'000, ' '));
+  EXPECT_EQ(refusal([&] { (void)config::read_urdf(large); }),
+            large.string() + ": is 1100000 bytes long, must be at most 1048576");
+}
+
 TEST(UrdfChain, AMissingFileIsNamed) {
   EXPECT_EQ(refusal([] { (void)config::read_urdf("nowhere/x.urdf"); }),
             "nowhere/x.urdf: cannot be read: No such file or directory");

@@ -20,6 +20,8 @@ class ChildProcess {
   ~ChildProcess();
 
   void send(int signal) const;
+  /// -1 once it has ended.
+  [[nodiscard]] int pid() const { return pid_; }
 
   /// Its exit status, or minus the signal that ended it. Past the bound it is killed.
   int wait(std::chrono::seconds bound = std::chrono::seconds(60));

@@ -1,0 +1,85 @@
+// tenon-monitor as a user runs it, on logs that hold what nobody sane would send.
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include "executor/telemetry/event_log.h"
+#include "executor/telemetry/telemetry.h"
+#include "lcmtypes/tenon/cycle_state_t.hpp"
+#include "lcmtypes/tenon/run_summary_t.hpp"
+#include "tests/support/bad_input.h"
+#include "tests/support/child_process.h"
+#include "tests/support/commands.h"
+#include "tests/support/places.h"
+
+namespace tenon::tests {
+namespace {
+
+template <typename Message>
+std::vector<std::uint8_t> bytes_of(const Message& message) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+// The joints' count stands behind these of a cycle's fields, and the hash.
+std::vector<std::uint8_t> cycle_with_joints(std::uint8_t count) {
+  tenon::cycle_state_t cycle{};
+  std::vector<std::uint8_t> bytes = bytes_of(cycle);
+  constexpr std::size_t kBehindTheCount_bytes = 4 + 8 + 8 + 4 + 8;
+  bytes[bytes.size() - kBehindTheCount_bytes - 1] = count;
+  return bytes;
+}
+
+std::vector<std::uint8_t> summary_that_says(const std::string& message) {
+  tenon::run_summary_t summary{};
+  summary.message = message;
+  return bytes_of(summary);
+}
+
+TEST(MonitorProcess, OutlivesADatagramWithANegativeCountAndShowsTheRest) {
+  const ScratchFolder folder;
+  {
+    executor::EventLog log(folder.path() / "log");
+    log.add(1, executor::kCycleChannel, cycle_with_joints(0xFB));
+    log.add(2, executor::kRunChannel, std::vector<std::uint8_t>{1, 2, 3});
+    log.add(3, executor::kRunChannel, summary_that_says("a\x1B[2Jb"));
+  }
+  const Ended ended = run(folder, {executable("tenon-monitor"), "--lcm-url",
+                                   "file://" + (folder.path() / "log").string()});
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_NE(ended.out.find("done: a\\x1B[2Jb"), std::string::npos) << ended.out;
+  EXPECT_EQ(ended.err, "tenon-monitor: 2 messages could not be decoded\n");
+}
+
+TEST(MonitorProcess, ALogThatIsAPipeOrADeviceIsRefusedWithoutWaiting) {
+  const ScratchFolder folder;
+  const std::string pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& file : {pipe, std::string("/dev/zero"), folder.path().string()}) {
+    expect_refused(folder, {{executable("tenon-monitor"), "--lcm-url", "file://" + file},
+                            {file, "not a regular file"}});
+  }
+}
+
+TEST(MonitorProcess, ASignalEndsItWhileNothingComes) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const ScratchFolder folder;
+    ChildProcess child(folder.path(), {executable("tenon-monitor"), "--lcm-url", "memq://"});
+    ASSERT_TRUE(child.wait_until([&] {
+      std::ifstream status("/proc/" + std::to_string(child.pid()) + "/status");
+      std::string text{std::istreambuf_iterator<char>(status), {}};
+      const auto at = text.find("SigCgt:");
+      return at != std::string::npos && std::stoull(text.substr(at + 7), nullptr, 16) != 0;
+    }));
+    child.send(signal);
+    EXPECT_EQ(child.wait(std::chrono::seconds(5)), 0);
+  }
+}
+
+}  // namespace
+}  // namespace tenon::tests
