@@ -35,7 +35,7 @@ set(TENON_MAY_USE_planner_report shared shared_drawing planner planner_belief pl
                                  nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_executor                shared executor_motion)
 set(TENON_MAY_USE_executor_states         shared)
-set(TENON_MAY_USE_executor_record         shared executor_states)
+set(TENON_MAY_USE_executor_record         shared shared_system executor_states)
 set(TENON_MAY_USE_executor_motion         shared executor_states)
 set(TENON_MAY_USE_executor_sensing        shared executor_states)
 set(TENON_MAY_USE_executor_dry_run        shared executor_motion nlohmann_json::nlohmann_json)
@@ -59,7 +59,7 @@ set(TENON_MAY_USE_sim_cell       shared sim_physics ODE::ODE nlohmann_json::nloh
 set(TENON_MAY_USE_sim_evaluation shared shared_system shared_drawing sim_cell
                                  nlohmann_json::nlohmann_json)
 # The evaluation runs executor and virtual arm in lockstep inside one process.
-set(TENON_MAY_USE_sim_evaluation_chain shared sim_evaluation sim_cell
+set(TENON_MAY_USE_sim_evaluation_chain shared shared_system sim_evaluation sim_cell
                                        executor_dry_run executor_loop executor_telemetry hw_arm)
 
 # The mains compose. What is common to all of them:

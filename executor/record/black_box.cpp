@@ -7,6 +7,7 @@
 #include "executor/states/ending.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
+#include "shared/system/record_file.h"
 
 namespace tenon::executor {
 namespace {

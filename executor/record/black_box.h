@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "executor/record/cycle_record.h"
-#include "shared/base/record_file.h"
+
+namespace tenon {
+struct RecordReport;
+}
 
 namespace tenon::executor {
 

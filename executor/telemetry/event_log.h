@@ -15,7 +15,7 @@
 #include <span>
 #include <string_view>
 
-#include "shared/base/record_file.h"
+#include "shared/system/record_file.h"
 
 namespace tenon::executor {
 

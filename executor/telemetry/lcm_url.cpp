@@ -12,8 +12,8 @@
 #include <string_view>
 
 #include "shared/base/error.h"
-#include "shared/base/regular_file.h"
 #include "shared/system/descriptor.h"
+#include "shared/system/regular_file.h"
 
 namespace tenon::executor {
 namespace {

@@ -10,8 +10,8 @@
 #include "executor/identification/finding.h"
 #include "executor/loop/controller.h"
 #include "executor/loop/cycle_runner.h"
-#include "shared/base/record_file.h"
 #include "shared/ports/can_bus.h"
+#include "shared/system/record_file.h"
 
 namespace tenon::executor {
 

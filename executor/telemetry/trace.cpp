@@ -7,7 +7,7 @@
 #include <string>
 
 #include "shared/base/error.h"
-#include "shared/base/regular_file.h"
+#include "shared/system/regular_file.h"
 
 namespace tenon::executor {
 namespace {

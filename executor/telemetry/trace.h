@@ -16,7 +16,7 @@
 
 #include "executor/motion/plan_runner.h"
 #include "executor/telemetry/recorder.h"
-#include "shared/base/record_file.h"
+#include "shared/system/record_file.h"
 
 namespace tenon::executor {
 

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "hw/can/recording_bus.h"
-#include "shared/base/record_file.h"
 #include "shared/ports/can_bus.h"
+#include "shared/system/record_file.h"
 
 namespace tenon::hw {
 

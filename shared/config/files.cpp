@@ -7,9 +7,9 @@
 #include <cstring>
 
 #include "shared/base/error.h"
-#include "shared/base/regular_file.h"
 #include "shared/config/load.h"
 #include "shared/system/descriptor.h"
+#include "shared/system/regular_file.h"
 
 namespace tenon {
 namespace {

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "shared/base/error.h"
-#include "shared/base/regular_file.h"
+#include "shared/system/regular_file.h"
 
 namespace tenon::sim {
 namespace {

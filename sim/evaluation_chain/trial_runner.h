@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "shared/base/record_file.h"
 #include "shared/cell/cell.h"
+#include "shared/system/record_file.h"
 #include "shared/task/task.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/trial.h"

@@ -1,6 +1,6 @@
 // Files of records count what did not get into them.
 
-#include "shared/base/record_file.h"
+#include "shared/system/record_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

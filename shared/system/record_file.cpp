@@ -1,4 +1,4 @@
-#include "shared/base/record_file.h"
+#include "shared/system/record_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "shared/base/error.h"
-#include "shared/base/regular_file.h"
+#include "shared/system/regular_file.h"
 
 namespace tenon {
 namespace {
