@@ -7,6 +7,7 @@
 #include "hw/canopen/emergency.h"
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/object_setting.h"
+#include "hw/cia402/drive_state.h"
 #include "shared/canopen/constants.h"
 
 namespace tenon::hw {
@@ -18,7 +19,11 @@ constexpr std::uint8_t kBothHalves = 3;
 
 ArmIntake::ArmIntake(const Robot& robot, std::span<JointChannel> joints,
                      ArmSupervision& supervision, ArmCounters& counters)
-    : joints_(joints), sensor_(robot.sensor), supervision_(supervision), counters_(counters) {}
+    : joints_(joints),
+      sensor_(robot.sensor),
+      other_master_(robot),
+      supervision_(supervision),
+      counters_(counters) {}
 
 void ArmIntake::reset() noexcept {
   for (JointChannel& joint : joints_) {
@@ -32,6 +37,7 @@ void ArmIntake::reset() noexcept {
 
 void ArmIntake::forget_freshness() noexcept {
   feedback_.joints_fresh = 0;
+  feedback_.joints_off = 0;
   halves_seen_ = 0;
 }
 
@@ -68,7 +74,10 @@ void ArmIntake::take(const CanFrame& frame, std::int64_t now_ns) noexcept {
   if (take_process_data(frame)) {
     return;
   }
-  if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
+  if (other_master_.sent(frame)) {
+    ++counters_.unexpected_frames;
+    supervision_.raise({ArmFaultKind::kOtherMaster, 0, 0, frame.id});
+  } else if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
     supervision_.take_heartbeat(*heartbeat, now_ns);
   } else if (const auto emergency = canopen::decode_emergency(frame)) {
     supervision_.take_emergency(*emergency);
@@ -98,6 +107,7 @@ bool ArmIntake::take_process_data(const CanFrame& frame) noexcept {
   feedback_.position[i] = joints_[i].position();
   feedback_.effort[i] = joints_[i].effort();
   feedback_.joints_fresh |= 1u << i;
+  if (!cia402::is_energised(joints_[i].state())) feedback_.joints_off |= 1u << i;
   return true;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // What an arm hears: the answers of its joints and the halves of its wrench become the feedback of
-// a cycle; heartbeats and emergencies, and a wrench beyond its range, go on to the supervision.
-// Decides nothing itself.
+// a cycle; heartbeats and emergencies, a wrench beyond its range and what another master sends go
+// on to the supervision. Decides nothing itself.
 //
 //   open_cycle()  takes in what came late, then waits for this cycle's answers
 //   drain()       takes in what has come, until feedback() is complete()
@@ -16,6 +16,7 @@
 #include "hw/arm/arm_counters.h"
 #include "hw/arm/arm_supervision.h"
 #include "hw/arm/joint_channel.h"
+#include "hw/arm/other_master.h"
 #include "hw/arm/wrench_pairing.h"
 #include "shared/cell/robot.h"
 #include "shared/ports/arm.h"
@@ -53,6 +54,7 @@ class ArmIntake {
 
   const std::span<JointChannel> joints_;
   const ForceTorqueSensor sensor_;
+  const OtherMaster other_master_;
   ArmSupervision& supervision_;
   ArmCounters& counters_;
 

@@ -24,8 +24,7 @@ constexpr std::array<ObjectSetting, 3> kIdentityObjects{{
 }  // namespace
 
 BringUp::BringUp(const Robot& robot)
-    : master_cob_id_(tenon::canopen::kHeartbeat + robot.master_node),
-      listen_ns_(robot.heartbeat_timeout_ms * std::int64_t{1'000'000}) {
+    : other_master_(robot), listen_ns_(robot.heartbeat_timeout_ms * std::int64_t{1'000'000}) {
   const auto add_node = [&](std::uint8_t node, const std::vector<ObjectSetting>& settings) {
     nodes_.push_back(node);
     watch_.add(node);
@@ -53,8 +52,11 @@ void BringUp::restart() {
 }
 
 void BringUp::process(const CanFrame& frame, std::int64_t now_ns, CanBus& bus) {
+  if (other_master_.sent(frame)) {
+    return fail(ArmFaultKind::kOtherMaster, 0, 0, frame.id);
+  }
   if (state_ == State::kListen) {
-    return listen(frame);
+    return;
   }
   if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
     const bool ours = watch_.process(*heartbeat, now_ns);
@@ -66,13 +68,6 @@ void BringUp::process(const CanFrame& frame, std::int64_t now_ns, CanBus& bus) {
   }
   if (const auto reply = sdo_.process(frame, now_ns)) {
     send(*reply, bus);
-  }
-}
-
-void BringUp::listen(const CanFrame& frame) {
-  const bool betrays = frame.id == tenon::canopen::kSync || frame.id == master_cob_id_;
-  if (betrays && !frame.extended) {
-    fail(ArmFaultKind::kOtherMaster, 0, 0, frame.id);
   }
 }
 

@@ -19,6 +19,7 @@
 #include <optional>
 #include <vector>
 
+#include "hw/arm/other_master.h"
 #include "hw/canopen/heartbeat_watch.h"
 #include "hw/canopen/object_setting.h"
 #include "hw/canopen/sdo_client.h"
@@ -73,7 +74,6 @@ class BringUp {
   };
   enum class Transfer : std::uint8_t { kNone, kWriting, kReading };
 
-  void listen(const CanFrame& frame);
   void enter_state(State state, std::int64_t now_ns, CanBus& bus);
   void await_all(std::uint8_t nmt_state, std::int64_t timeout_ns, State next, std::int64_t now_ns,
                  CanBus& bus);
@@ -96,7 +96,7 @@ class BringUp {
   canopen::HeartbeatWatch watch_;
   canopen::SdoClient sdo_;
 
-  const std::uint32_t master_cob_id_;  ///< of the heartbeat that nobody but us may send
+  const OtherMaster other_master_;
   const std::int64_t listen_ns_;
 
   State state_ = State::kListen;

@@ -157,6 +157,14 @@ std::string sensor_invalid(const ArmFault& fault, const Robot& robot) {
   return "reports error " + error_code(fault.code) + "; check the sensor";
 }
 
+/// Of a frame that betrays another master (hw/arm/other_master.h).
+const char* master_frame_name(std::uint32_t cob_id) {
+  if (cob_id == tenon::canopen::kNmt) return "NMT command";
+  if (cob_id == tenon::canopen::kSync) return "SYNC";
+  if (cob_id >= tenon::canopen::kHeartbeat) return "heartbeat of the master's node";
+  return cob_id >= tenon::canopen::kSdoRequest ? "SDO download" : "setpoint of a drive";
+}
+
 }  // namespace
 
 std::string describe(const ArmFault& fault, const Robot& robot) {
@@ -196,11 +204,8 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
       return "the CAN bus is gone (interface down or connection closed); check the adapter, or "
              "that the other end still runs";
     case ArmFaultKind::kOtherMaster:
-      return format(
-          "another master runs on this bus: 0x%03X (%s) came before this one had sent "
-          "anything; stop it first",
-          fault.code,
-          fault.code == tenon::canopen::kSync ? "SYNC" : "heartbeat of the master's node");
+      return format("another master runs on this bus: 0x%03X (%s) came from it; stop it first",
+                    fault.code, master_frame_name(fault.code));
     case ArmFaultKind::kBusOff:
       return "the CAN controller went bus-off (too many errors); check wiring, termination and "
              "bit rate";

@@ -8,6 +8,7 @@
 #include "hw/arm/cob_ids.h"
 #include "hw/cia402/enabling.h"
 #include "shared/base/bytes.h"
+#include "shared/canopen/constants.h"
 
 namespace tenon::hw {
 
@@ -21,7 +22,8 @@ JointChannel::JointChannel(const Joint& joint)
       rated_effort_(joint.rated_effort) {}
 
 void JointChannel::reset() {
-  seen_ = reached_enabled_ = false;
+  seen_ = answered_ = reached_enabled_ = false;
+  stop_cycles_ = 0;
   request_ = ArmRequest::kDisabled;
   sent_controlword_.reset();
   statusword_ = controlword_ = 0;
@@ -37,7 +39,7 @@ bool JointChannel::take_feedback(const CanFrame& frame) {
   statusword_ = load_le<std::uint16_t>(bytes);
   effort_permille_ = load_le<std::int16_t>(bytes.subspan(2));
   position_counts_ = load_le<std::int32_t>(bytes.subspan(4));
-  seen_ = true;
+  seen_ = answered_ = true;
   return true;
 }
 
@@ -58,9 +60,21 @@ bool JointChannel::update(ArmRequest request, bool follow, double setpoint) {
     target_counts_ = position_counts_;
   }
   reached_enabled_ = request == ArmRequest::kEnabled && (reached_enabled_ || enabled);
-  controlword_ = cia402::next_controlword(state(), request, controlword_, interpolated_);
+  controlword_ = next_controlword(request);
   request_ = request;
+  answered_ = false;
   return valid;
+}
+
+std::uint16_t JointChannel::next_controlword(ArmRequest request) {
+  const bool unheard = !answered_ && cia402::is_energised(state());
+  const bool stopping = state() == DriveState::kQuickStopActive || unheard;
+  stop_cycles_ = request == ArmRequest::kDisabled && stopping ? stop_cycles_ + 1 : 0;
+  if (stop_cycles_ == 0) {
+    return cia402::next_controlword(state(), request, controlword_, interpolated_);
+  }
+  if (stop_cycles_ <= kStopPatience) return tenon::canopen::kCommandQuickStop;
+  return tenon::canopen::kCommandDisableVoltage;
 }
 
 CanFrame JointChannel::command_frame() const {

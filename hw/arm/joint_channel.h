@@ -23,6 +23,8 @@ namespace tenon::hw {
 
 class JointChannel {
  public:
+  static constexpr int kStopPatience = 500;  ///< cycles; 0.5 s and more
+
   JointChannel() = default;
   explicit JointChannel(const Joint& joint);
 
@@ -31,8 +33,14 @@ class JointChannel {
 
   /// False: not 8 bytes, dropped.
   [[nodiscard]] bool take_feedback(const CanFrame& frame);
-  /// Target and controlword for what is asked: `setpoint` (m or rad) once the whole arm is enabled,
-  /// before that the actual position. False: the setpoint is no number, the last target stays.
+  /// Once a cycle. Target and controlword for what is asked: `setpoint` (m or rad) once the whole
+  /// arm is enabled, before that the actual position. False: the setpoint is no number, the last
+  /// target stays.
+  ///
+  /// A drive in its quick stop that is to be disabled goes on ramping down and closes its brake by
+  /// itself; disable voltage would let the axis go before. The same for a drive that may be on and
+  /// did not answer in this cycle. What is not off after kStopPatience cycles loses its voltage all
+  /// the same.
   [[nodiscard]] bool update(ArmRequest request, bool follow, double setpoint);
   /// RPDO1 with both.
   [[nodiscard]] CanFrame command_frame() const;
@@ -58,7 +66,11 @@ class JointChannel {
   double zero_counts_ = 0.0;
   double rated_effort_ = 0.0;
 
+  [[nodiscard]] std::uint16_t next_controlword(ArmRequest request);
+
   bool seen_ = false;
+  bool answered_ = false;  ///< since the last update()
+  int stop_cycles_ = 0;    ///< in a row that it is left to its quick stop
   ArmRequest request_ = ArmRequest::kDisabled;
   std::optional<std::uint16_t> sent_controlword_;  ///< by RPDO2
   bool reached_enabled_ = false;

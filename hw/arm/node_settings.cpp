@@ -21,7 +21,10 @@ using Settings = std::vector<ObjectSetting>;
 
 constexpr std::uint32_t kDriveProfile = 402;
 constexpr std::uint32_t kOptionQuickStopOnLostMaster = 3;
-constexpr std::uint32_t kOptionRampDownAndHold = 6;
+// And not 6, which holds under power until somebody commands the drive: after a quick stop for want
+// of a master nobody does, and the only way out, disable voltage, lets the axis go before the brake
+// holds it.
+constexpr std::uint32_t kOptionQuickRampThenDisable = 2;
 constexpr std::uint32_t kOptionRampDownThenDisable = 1;
 constexpr std::uint32_t kFollowingTimeout_ms = 10;
 
@@ -38,7 +41,7 @@ void append_supervision(Settings& settings, const Robot& robot, const Joint& joi
       static_cast<std::uint32_t>(robot.master_node) << 16 | robot.heartbeat_timeout_ms;
   settings.push_back({Action::kWrite, kHeartbeatConsumer, 1, 4, consumer});
   settings.push_back({Action::kWrite, kAbortConnectionOption, 0, 2, kOptionQuickStopOnLostMaster});
-  settings.push_back({Action::kWrite, kQuickStopOption, 0, 2, kOptionRampDownAndHold});
+  settings.push_back({Action::kWrite, kQuickStopOption, 0, 2, kOptionQuickRampThenDisable});
   settings.push_back({Action::kWrite, kShutdownOption, 0, 2, kOptionRampDownThenDisable});
   settings.push_back({Action::kWrite, kDisableOption, 0, 2, kOptionRampDownThenDisable});
   settings.push_back(

@@ -41,11 +41,23 @@ void set_non_blocking(const Descriptor& descriptor) {
 
 }  // namespace
 
+Descriptor connect_any(const addrinfo* addresses) {
+  int error = EADDRNOTAVAIL;
+  for (const addrinfo* to = addresses; to != nullptr; to = to->ai_next) {
+    Descriptor socket(::socket(to->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    if (socket.is_open() && ::connect(socket.get(), to->ai_addr, to->ai_addrlen) == 0) {
+      return socket;
+    }
+    error = errno;
+    if (error == EINTR) break;  // asked to stop
+  }
+  errno = error;
+  return {};
+}
+
 Descriptor connect_tcp(const std::string& host, std::uint16_t port) {
-  const Addresses addresses = resolve(host, port, 0);
-  Descriptor socket(::socket(addresses->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (!socket.is_open() ||
-      ::connect(socket.get(), addresses->ai_addr, addresses->ai_addrlen) != 0) {
+  Descriptor socket = connect_any(resolve(host, port, 0).get());
+  if (!socket.is_open()) {
     const std::string reason = std::strerror(errno);
     throw InputError("CAN bus slcan://" + name_of(host, port) + ": cannot connect: " + reason +
                      "; start the other end first (tenon-sim --can slcan-listen://" +

@@ -7,9 +7,14 @@
 
 #include "shared/system/descriptor.h"
 
+struct addrinfo;
+
 namespace tenon::hw {
 
-/// A TCP connection with TCP_NODELAY.
+/// A blocking TCP connection to the first of the addresses that takes it. Where none does it is not
+/// open, and errno says why the last one did not.
+[[nodiscard]] Descriptor connect_any(const addrinfo* addresses);
+/// A TCP connection with TCP_NODELAY, to any of the host's addresses.
 [[nodiscard]] Descriptor connect_tcp(const std::string& host, std::uint16_t port);
 /// A listening TCP socket; port 0 takes a free one.
 [[nodiscard]] Descriptor listen_tcp(const std::string& host, std::uint16_t port);

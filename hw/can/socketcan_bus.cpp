@@ -77,7 +77,7 @@ SocketcanBus::SocketcanBus(const std::string& interface, std::uint32_t bitrate_b
       socket_(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)) {
   if (!socket_.is_open()) {
     fail(interface,
-           "this kernel has no CAN sockets; load can-raw (modprobe can-raw), or use slcan:");
+         "this kernel has no CAN sockets; load can-raw (modprobe can-raw), or use slcan:");
   }
   const SocketcanLink link = read_link(interface);
   check_link(link, interface, bitrate_bps, burst_frames);

@@ -16,6 +16,8 @@ const char* emergency_text(std::uint32_t code) {
       return "recovered from bus-off";
     case tenon::canopen::kEmergencyPdoLength:
       return "PDO of wrong length";
+    case tenon::canopen::kEmergencySyncLength:
+      return "SYNC of wrong length";
     case tenon::canopen::kEmergencyRpdoTimeout:
       return "RPDO timeout";
     case tenon::canopen::kEmergencyFollowingError:

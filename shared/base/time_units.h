@@ -1,5 +1,6 @@
 #pragma once
-// Times that are kept and compared are nanoseconds, as integers; times that are calculated with are seconds.
+// Times that are kept and compared are nanoseconds, as integers; times that are calculated with are
+// seconds.
 
 #include <cstdint>
 

@@ -72,6 +72,7 @@ inline constexpr std::uint16_t kEmergencyErrorPassive = 0x8120;
 inline constexpr std::uint16_t kEmergencyHeartbeat = 0x8130;
 inline constexpr std::uint16_t kEmergencyBusOffRecovered = 0x8140;
 inline constexpr std::uint16_t kEmergencyPdoLength = 0x8210;
+inline constexpr std::uint16_t kEmergencySyncLength = 0x8240;
 inline constexpr std::uint16_t kEmergencyRpdoTimeout = 0x8250;
 inline constexpr std::uint16_t kEmergencyFollowingError = 0x8611;
 

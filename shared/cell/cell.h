@@ -20,6 +20,7 @@ struct Cell {
   double contact_stiffness_Npm = 5e4;       ///< k_e, in series with arm and sensor
   double force_fault_N = 60.0;              ///< beyond: stop
   double torque_fault_Nm = 10.0;
+  bool hold_if_brake_fails = false;  ///< a brake that slips after disabling: power again, and hold
 };
 
 }  // namespace tenon

@@ -12,9 +12,10 @@ Cell load_cell(const std::filesystem::path& file) {
   using config::positive_to;
   using config::Value;
 
-  const Map map(Value::parse(file, config::read_file(file)),
-                {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange",
-                 "sensor_in_flange", "payload", "contact_stiffness_Npm", "faults"});
+  const Map map(
+      Value::parse(file, config::read_file(file)),
+      {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange", "sensor_in_flange",
+       "payload", "contact_stiffness_Npm", "faults", "on_brake_failure"});
   Cell cell;
   cell.name = map.at("name").name();
   if (const auto up = map.find("up_in_base")) {
@@ -40,6 +41,9 @@ Cell load_cell(const std::filesystem::path& file) {
   const Map faults(map.at("faults"), {"force_N", "torque_Nm"});
   cell.force_fault_N = faults.number("force_N", positive_to(cell.robot.sensor.force_range_N));
   cell.torque_fault_Nm = faults.number("torque_Nm", positive_to(cell.robot.sensor.torque_range_Nm));
+  if (const auto reaction = map.find("on_brake_failure")) {
+    cell.hold_if_brake_fails = reaction->choice({"power_off", "hold"}) == 1;
+  }
   return cell;
 }
 

@@ -43,7 +43,7 @@ enum class ArmFaultKind : std::uint8_t {
   kSensorInvalid = 9,    ///< saturated, torn or self-reported fault
   kBusDown = 10,
   kBusOff = 11,
-  kOtherMaster = 12,  ///< another master runs on the bus; code is the COB-ID that betrayed it
+  kOtherMaster = 12,  ///< another master sends on the bus; code is the COB-ID that betrayed it
 };
 
 /// Plain data, so that real-time code can carry it. describe() in hw gives the line for people.
@@ -59,6 +59,7 @@ struct ArmFeedback {
   JointVector position{};
   JointVector effort{};            ///< N or Nm
   std::uint32_t joints_fresh = 0;  ///< bit i: joint i answered this cycle
+  std::uint32_t joints_off = 0;    ///< bit i: and said that its motor has no power
   Vector6 wrench =
       Vector6::Zero();        ///< what acts on the load beyond the sensor, in sensor axes, raw
   bool wrench_fresh = false;  ///< a new, whole sample

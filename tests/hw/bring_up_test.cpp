@@ -37,7 +37,7 @@ TEST(BringUp, WritesTheDriveThisConfigurationInThisOrder) {
       {0x606000, 8},           // cyclic synchronous position
       {0x101601, 0x007F012C},  // watch node 127 for 300 ms
       {0x600700, 3},           // then quick stop
-      {0x605A00, 6},           // quick stop: ramp down and hold
+      {0x605A00, 2},           // quick stop: ramp down, then disable
       {0x605B00, 1},          {0x605C00, 1},          {0x608500, 10'000'000},  // 10 m/s^2
       {0x606500, 5000},                                                        // 5 mm
       {0x606600, 10},                                                          // 10 ms
@@ -227,8 +227,7 @@ TEST(BringUp, ListensFirstAndLeavesTheArmOfAnotherMasterAlone) {
   GantryOnBus gantry;
   ASSERT_TRUE(gantry.prepare_and_enable());
   EXPECT_EQ(second_master(gantry),
-            "another master runs on this bus: 0x080 (SYNC) came before this one had sent anything; "
-            "stop it first");
+            "another master runs on this bus: 0x080 (SYNC) came from it; stop it first");
   for (int i = 0; i < 10; ++i) gantry.cycle(ArmRequest::kEnabled, gantry.feedback.position);
   EXPECT_EQ(gantry.arm.state(), ArmState::kEnabled);
   EXPECT_EQ(gantry.nodes[0]->statusword, 0x0237);
@@ -243,8 +242,8 @@ TEST(BringUp, AMasterWithoutSyncIsKnownByItsHeartbeat) {
   heartbeat.data[0] = 0x05;
   (void)gantry.bus.attach().send(heartbeat);
   EXPECT_EQ(failure(gantry),
-            "another master runs on this bus: 0x77F (heartbeat of the master's node) came before "
-            "this one had sent anything; stop it first");
+            "another master runs on this bus: 0x77F (heartbeat of the master's node) came from it; "
+            "stop it first");
 }
 
 TEST(BringUp, NothingLeavesWhileItListens) {

@@ -88,7 +88,7 @@ TEST(CanopenArm, MasterHeartbeatLeavesEvery100Milliseconds) {
   EXPECT_EQ(times.size(), 10u);
 }
 
-TEST(CanopenArm, QuickStopHoldsAndDisablesOrEnablesFromThere) {
+TEST(CanopenArm, AQuickStopEndsWithDrivesThatAreOffAndCanBeEnabledAgain) {
   GantryOnBus gantry;
   ASSERT_TRUE(gantry.prepare_and_enable());
   for (int i = 0; i < 4; ++i) gantry.cycle(ArmRequest::kQuickStop);
@@ -157,7 +157,7 @@ TEST(CanopenArm, FaultOfADriveQuickStopsTheOthers) {
   EXPECT_EQ(gantry.arm.fault().node, 1);
   gantry.cycle(ArmRequest::kEnabled);
   EXPECT_EQ(gantry.nodes[1]->controlword, 0x02);
-  for (int i = 0; i < 4; ++i) gantry.cycle(ArmRequest::kDisabled);
+  for (int i = 0; i < 10; ++i) gantry.cycle(ArmRequest::kDisabled);
   EXPECT_EQ(gantry.nodes[1]->statusword, 0x0250);
   EXPECT_EQ(gantry.arm.state(), ArmState::kFault);
 }

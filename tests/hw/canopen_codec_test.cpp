@@ -80,6 +80,7 @@ TEST(EmergencyCodec, DecodesCodeRegisterAndVendorBytes) {
 
 TEST(EmergencyCodec, ACodeThatNoStandardNamesGetsNoWords) {
   EXPECT_STREQ(emergency_text(0x3210), "DC link over-voltage");
+  EXPECT_STREQ(emergency_text(0x8240), "SYNC of wrong length");
   EXPECT_EQ(emergency_text(0x3299), nullptr);
   EXPECT_EQ(emergency_text(0x8699), nullptr);
   EXPECT_EQ(emergency_text(0xFF01), nullptr);

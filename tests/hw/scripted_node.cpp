@@ -73,6 +73,7 @@ void ScriptedNode::step(std::int64_t now_ns) {
       if (frame.id == objects[0x140001 + (k << 8)].value) on_rpdo(k, frame);
     }
   }
+  end_quick_stop();
   const std::int64_t period_ns = objects[0x101700].value * 1'000'000LL;
   if (!dead && heartbeats && period_ns > 0 && now_ns >= next_heartbeat_ns_) {
     next_heartbeat_ns_ = now_ns + period_ns;
@@ -224,6 +225,14 @@ bool ScriptedNode::follows_targets() const {
   return statusword == 0x0237 && (!interpolated || (controlword & 0x10) != 0);
 }
 
+/// With 605Ah = 2 a drive ramps down, closes its brake and goes off by itself.
+void ScriptedNode::end_quick_stop() {
+  constexpr int kSteps = 10;
+  const bool over = objects[0x605A00].value == 2 && !stays_in_quick_stop;
+  quick_stop_steps_ = statusword == 0x0217 && over ? quick_stop_steps_ + 1 : 0;
+  if (quick_stop_steps_ > kSteps) statusword = 0x0250;
+}
+
 /// A controlword has arrived.
 void ScriptedNode::obey(std::uint16_t before) {
   if (stuck) return;
@@ -248,7 +257,6 @@ void ScriptedNode::obey(std::uint16_t before) {
       if (controlword == 0x02) statusword = 0x0217;
       break;
     case 0x0217:  // quick stop active
-      if (controlword == 0x0F) statusword = 0x0237;
       if (controlword == 0x00) statusword = 0x0250;
       break;
   }

@@ -54,9 +54,10 @@ class ScriptedNode {
   bool heartbeats = true;
   bool answers_sync = true;
   bool ignores_start = false;
-  bool stuck = false;   ///< the drive's state machine does not move
-  bool tears = false;   ///< a new sample between the two frames of a wrench
-  bool follows = true;  ///< position := target at each SYNC
+  bool stuck = false;                ///< the drive's state machine does not move
+  bool stays_in_quick_stop = false;  ///< as with 605Ah = 6
+  bool tears = false;                ///< a new sample between the two frames of a wrench
+  bool follows = true;               ///< position := target at each SYNC
   std::uint8_t tpdo_bytes = 8;
   std::map<std::uint32_t, std::uint32_t> refuses;  ///< object to abort code
   std::map<std::uint32_t, std::uint32_t> keeps;    ///< object to the value that reading gives
@@ -65,6 +66,7 @@ class ScriptedNode {
   std::optional<std::uint32_t> mute_at;                    ///< object whose SDO is not answered
 
  private:
+  void end_quick_stop();
   void on_nmt(const CanFrame& frame);
   void on_sdo(const CanFrame& frame);
   void on_rpdo(unsigned number, const CanFrame& frame);
@@ -80,6 +82,7 @@ class ScriptedNode {
   Kind kind_;
   std::uint8_t node_;
   CanBus& bus_;
+  int quick_stop_steps_ = 0;
   std::int64_t next_heartbeat_ns_ = 0;
   std::array<std::optional<CanFrame>, 2> pending_;  ///< synchronous RPDOs since the last SYNC
 };

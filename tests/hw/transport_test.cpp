@@ -2,9 +2,12 @@
 // bounded waits, no assertion on time.
 
 #include <gtest/gtest.h>
+#include <netdb.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <random>
 #include <string>
@@ -31,6 +34,26 @@ TEST(SlcanOverTcp, FramesGoBothWays) {
   ASSERT_TRUE(receive_soon(*client, received));
   EXPECT_EQ(received.frame, frame_of(0x190, 8));
   EXPECT_EQ(client->status().malformed, 0u);
+}
+
+// As where a host's first address is one of IPv6 that the other end does not serve.
+TEST(SlcanOverTcp, AHostsOtherAddressesAreTriedToo) {
+  const Descriptor listener = listen_tcp("127.0.0.1", 0);
+  sockaddr_in open{};
+  socklen_t size = sizeof(open);
+  ASSERT_EQ(::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&open), &size), 0);
+  sockaddr_in closed = open;
+  closed.sin_port = htons(1);
+  addrinfo second{};
+  second.ai_family = AF_INET;
+  second.ai_addr = reinterpret_cast<sockaddr*>(&open);
+  second.ai_addrlen = size;
+  addrinfo first = second;
+  first.ai_addr = reinterpret_cast<sockaddr*>(&closed);
+  EXPECT_FALSE(connect_any(&first).is_open());
+  EXPECT_EQ(errno, ECONNREFUSED);
+  first.ai_next = &second;
+  EXPECT_TRUE(connect_any(&first).is_open());
 }
 
 TEST(SlcanOverTcp, FramesOfAClientReachTheOtherClients) {
