@@ -27,6 +27,7 @@
 #include "sim/cell/faults/fault_spec.h"
 #include "sim/cell/faults/faulty_bus.h"
 #include "sim/cell/virtual_arm/environment_offset.h"
+#include "sim/cell/virtual_arm/one_client.h"
 #include "sim/cell/virtual_arm/virtual_cell.h"
 #include "sim/cell/virtual_arm/world_draw.h"
 
@@ -36,7 +37,6 @@ using namespace tenon;
 
 constexpr std::int64_t kTick_ns = 1'000'000;
 constexpr std::int64_t kLate_ns = 1'000'000;
-constexpr std::int64_t kSettled_ns = 1'000'000'000;
 
 std::atomic<bool> stop_requested{false};
 
@@ -55,20 +55,6 @@ struct CommandLine {
   bool once = false;
 };
 
-/// Ends a run that was asked to serve one client: it came, it went, and the arm has come to rest.
-class OneClient {
- public:
-  [[nodiscard]] bool finished(bool connected, bool standstill, std::int64_t now_ns) {
-    seen_ = seen_ || connected;
-    if (connected || !standstill || !seen_) rest_since_ns_ = now_ns;
-    return now_ns - rest_since_ns_ > kSettled_ns;
-  }
-
- private:
-  bool seen_ = false;
-  std::int64_t rest_since_ns_ = 0;
-};
-
 struct Lateness {
   std::uint64_t wakes = 0;
   std::uint64_t late = 0;
@@ -83,7 +69,7 @@ struct Lateness {
 
 Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer* server) {
   Lateness lateness;
-  OneClient one_client;
+  sim::OneClient one_client;
   std::int64_t due_ns = monotonic_now_ns();
   while (!stop_requested.load(std::memory_order_relaxed)) {
     const std::int64_t now_ns = monotonic_now_ns();

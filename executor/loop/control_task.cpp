@@ -1,6 +1,7 @@
 #include "executor/loop/control_task.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "executor/motion/joint_difference.h"
 #include "shared/base/time_units.h"
@@ -11,6 +12,16 @@ namespace {
 // Drives are at rest when no joint has moved further than this for so many cycles.
 constexpr double kRestMotion = 2e-5;
 constexpr int kRestCycles = 20;
+
+// What the slowest joint needs from its full speed, by the deceleration that its drive is told.
+double time_to_rest_s(const Robot& robot) {
+  constexpr double kMargin_s = 0.1;
+  double longest_s = 0.0;
+  for (const Joint& joint : robot.joints) {
+    longest_s = std::max(longest_s, joint.speed_max / joint.acceleration_max);
+  }
+  return longest_s + robot.response_lag_s + kMargin_s;
+}
 
 // The task has done what it could, and stands.
 bool came_to_its_end(EndReason reason) {
@@ -28,14 +39,18 @@ ControlTask::ControlTask(const Cell& cell, const Parameters& parameters)
       kinematics_(cell_),
       supervision_(cell_, kinematics_, parameters.supervision),
       sensor_tare_(SensorTare::parameters_for(cell.robot.sensor, parameters.tare_samples)),
-      joints_(cell_.robot, kinematics_) {}
+      joints_(cell_.robot, kinematics_) {
+  parameters_.quick_stop_s = std::max(parameters_.quick_stop_s, time_to_rest_s(cell_.robot));
+}
 
 ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& feedback) noexcept {
   motion_ns_ += cycle_ns_;
   if (const auto ending = supervision_.update(feedback, following())) take(*ending);
   if (stop_requested_) take(Ending{.reason = EndReason::kStopRequested});
   take(act(feedback));
-  if (state_ == State::kWaiting) joints_.rest_at(supervision_.joints());
+  const bool about_to_enable = state_ == State::kWaiting || state_ == State::kCatching;
+  if (about_to_enable && feedback.state != ArmState::kEnabled)
+    joints_.rest_at(supervision_.joints());
   Vector6 velocity = Vector6::Zero();
   if (moving()) {
     if (const auto refused = command_joints()) take(*refused);
@@ -81,7 +96,7 @@ ControlTask::Turn ControlTask::enter_state(State state) {
     joints_.rest_at(supervision_.joints());
     tare_low_ = tare_high_ = supervision_.joints();
   }
-  if (state == State::kQuickStopping) {
+  if (state == State::kQuickStopping || state == State::kWatching) {
     rest_at_ = supervision_.joints();
     rest_cycles_ = 0;
   }
@@ -93,10 +108,15 @@ Event ControlTask::remember(const Ending& ending) {
   on_ending(ending);
   const bool fault = end_manner(ending.reason) == EndManner::kQuickStop;
   const bool first = ending_.reason == EndReason::kNone;
-  const bool worse =
-      fault && end_manner(ending_.reason) != EndManner::kQuickStop && state_ < State::kDisabling;
-  if (first || worse) ending_ = ending;
+  const bool worse = fault && end_manner(ending_.reason) != EndManner::kQuickStop &&
+                     (state_ < State::kDisabling || ending.reason == EndReason::kBrakeFailed);
+  if (first || worse) {
+    const bool disable_confirmed = ending_.disable_confirmed;
+    ending_ = ending;
+    ending_.disable_confirmed = disable_confirmed;
+  }
   if (came_to_its_end(ending.reason)) return Event::kWorkEnded;
+  if (ending.reason == EndReason::kBrakeFailed) return Event::kBrakeFailed;
   return fault ? Event::kFault : Event::kStop;
 }
 
@@ -125,8 +145,11 @@ ArmRequest ControlTask::request() const {
     case State::kQuickStopping:
       return ArmRequest::kQuickStop;
     case State::kDisabling:
+    case State::kWatching:
     case State::kFinished:
       return ArmRequest::kDisabled;
+    case State::kCatching:
+      return cell_.hold_if_brake_fails ? ArmRequest::kEnabled : ArmRequest::kDisabled;
   }
   return ArmRequest::kDisabled;
 }
@@ -146,12 +169,16 @@ ControlTask::Turn ControlTask::act(const ArmFeedback& feedback) {
     case State::kStopping:
       return ramp_down();
     case State::kQuickStopping:
-      return wait_for_rest();
+      return wait_for_rest(feedback);
     case State::kHolding:
       if (time_in_state_s() >= parameters_.hold_s) return Event::kHeld;
       return {};
     case State::kDisabling:
       return wait_for_disabled(feedback);
+    case State::kWatching:
+      return watch_brakes();
+    case State::kCatching:
+      return keep_power();
     case State::kFinished:
       return {};
   }
@@ -188,9 +215,11 @@ ControlTask::Turn ControlTask::tare(const ArmFeedback& feedback) {
   return {};
 }
 
-ControlTask::Turn ControlTask::wait_for_rest() {
+// A joint that does not answer may move.
+ControlTask::Turn ControlTask::wait_for_rest(const ArmFeedback& feedback) {
   const JointVector& joints = supervision_.joints();
-  const bool moved = largest_difference(joints, rest_at_).value > kRestMotion;
+  const bool moved = feedback.joints_fresh != all_joints() ||
+                     largest_difference(joints, rest_at_).value > kRestMotion;
   rest_cycles_ = moved ? 0 : rest_cycles_ + 1;
   if (moved) rest_at_ = joints;
   const bool rested = rest_cycles_ >= kRestCycles || time_in_state_s() >= parameters_.quick_stop_s;
@@ -198,14 +227,40 @@ ControlTask::Turn ControlTask::wait_for_rest() {
 }
 
 ControlTask::Turn ControlTask::wait_for_disabled(const ArmFeedback& feedback) {
-  const bool off =
-      feedback.state == ArmState::kDisabled || feedback.state == ArmState::kUnconfigured;
+  // In a fault the arm's state stays one: the drives' own words count. A bus that is gone brings
+  // none.
+  const bool off = feedback.state == ArmState::kDisabled ||
+                   feedback.state == ArmState::kUnconfigured || feedback.joints_off == all_joints();
   const double patience_s =
-      feedback.state == ArmState::kFault ? parameters_.quick_stop_s : parameters_.disable_timeout_s;
+      feedback.joints_fresh == 0 ? parameters_.quick_stop_s : parameters_.disable_timeout_s;
   if (!off && time_in_state_s() < patience_s) return {};
   ending_.disable_confirmed = off;
   return Event::kDisabled;
 }
+
+ControlTask::Turn ControlTask::watch_brakes() const {
+  const bool told = ending_.reason == EndReason::kBrakeFailed;
+  if (told || !ending_.disable_confirmed) return Event::kHeld;
+  for (std::size_t i = 0; i < cell_.robot.joints.size(); ++i) {
+    const bool turns = cell_.robot.joints[i].kind == Joint::Kind::kRevolute;
+    const double play = turns ? parameters_.brake_play_rad : parameters_.brake_play_m;
+    const double moved = std::abs(supervision_.joints()[i] - rest_at_[i]);
+    if (moved <= play) continue;
+    return Ending{.reason = EndReason::kBrakeFailed,
+                  .index = static_cast<int>(i),
+                  .value = moved,
+                  .bound = play};
+  }
+  return time_in_state_s() >= parameters_.brake_watch_s ? Turn(Event::kHeld) : Turn();
+}
+
+// Until the user has something under the arm, and says so.
+ControlTask::Turn ControlTask::keep_power() const {
+  const bool brake = ending_.reason == EndReason::kBrakeFailed;
+  return brake && cell_.hold_if_brake_fails ? Turn() : Turn(Event::kStop);
+}
+
+std::uint32_t ControlTask::all_joints() const { return (1U << cell_.robot.joints.size()) - 1U; }
 
 void ControlTask::write_record(std::int64_t now_ns, const ArmFeedback& feedback,
                                const Command& command) {

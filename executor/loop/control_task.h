@@ -1,10 +1,10 @@
 #pragma once
 // A task of the control cycle, from the arm's feedback to its joint setpoints: what all tasks have
-// in common. It waits for the drives, tares the sensor at rest, holds at the end and disables; it
-// watches the arm from the first cycle to the last, and remembers why the run ended
-// (state_machine.h draws the states). How the tool or the joints move in between is the derived
-// class's: the run of a plan (controller.h), the motion of an identification (identification/).
-// That class says what a cycle came to; the state changes here alone.
+// in common. It waits for the drives, tares the sensor at rest, holds at the end, disables and sees
+// that the brakes hold; it watches the arm from the first cycle to the last, and remembers why the
+// run ended (state_machine.h draws the states). How the tool or the joints move in between is the
+// derived class's: the run of a plan (controller.h), the motion of an identification
+// (identification/). That class says what a cycle came to; the state changes here alone.
 //
 // Plain code without clock, bus or thread; time is an argument. Real-time but for the constructor:
 // no allocation, no lock, no throw. One thread.
@@ -33,7 +33,10 @@ class ControlTask {
     double enable_timeout_s = 5.0;
     double disable_timeout_s = 3.0;
     double hold_s = 0.2;
-    double quick_stop_s = 0.5;  ///< left to the drives to ramp down
+    double quick_stop_s = 0.5;   ///< left to the drives to ramp down; more where a joint needs more
+    double brake_watch_s = 0.5;  ///< after the drives are off; more than a brake takes to close
+    double brake_play_rad = 2e-3;  ///< that a joint may move with its brake closed
+    double brake_play_m = 5e-4;
     Supervision::Parameters supervision;
   };
 
@@ -115,12 +118,15 @@ class ControlTask {
   [[nodiscard]] bool following() const;
   [[nodiscard]] bool moving() const;
   [[nodiscard]] ArmRequest request() const;
+  [[nodiscard]] std::uint32_t all_joints() const;
 
   [[nodiscard]] Turn act(const ArmFeedback& feedback);
   [[nodiscard]] Turn wait_for_drives(const ArmFeedback& feedback) const;
   [[nodiscard]] Turn tare(const ArmFeedback& feedback);
-  [[nodiscard]] Turn wait_for_rest();
+  [[nodiscard]] Turn wait_for_rest(const ArmFeedback& feedback);
   [[nodiscard]] Turn wait_for_disabled(const ArmFeedback& feedback);
+  [[nodiscard]] Turn watch_brakes() const;
+  [[nodiscard]] Turn keep_power() const;
   void write_record(std::int64_t now_ns, const ArmFeedback& feedback, const Command& command);
 
   Cell cell_;
@@ -141,7 +147,7 @@ class ControlTask {
 
   JointVector tare_low_{};
   JointVector tare_high_{};
-  JointVector rest_at_{};  ///< where the joints were when they last moved
+  JointVector rest_at_{};  ///< where the joints were when they last moved, or the drives went off
   int rest_cycles_ = 0;
   CycleRecord record_;
 };

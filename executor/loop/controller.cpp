@@ -43,6 +43,8 @@ ControlTask::Turn Controller::on_enter(State state) {
     case State::kWaiting:
     case State::kQuickStopping:
     case State::kDisabling:
+    case State::kWatching:
+    case State::kCatching:
     case State::kFinished:
       break;
   }

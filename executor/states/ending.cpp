@@ -89,6 +89,17 @@ std::string feedback_missing(const Ending& e, const Joint& joint) {
          format(" did not answer for %.0f cycles in a row, at most %.0f", e.value, e.bound);
 }
 
+std::string feedback_poor(const Ending& e) {
+  return format("feedback was missing in %.0f cycles, too many for what the plan was made for",
+                e.value);
+}
+
+std::string brake_failed(const Ending& e, const Joint& joint) {
+  return "joint " + joint.name +
+         format(" moved by %.3g %s with the drives off, at most %.3g: its brake does not hold",
+                e.value, joint_unit(joint), e.bound);
+}
+
 std::string arm_fault(const ArmFault& fault, const std::string& text) {
   if (!text.empty()) return "arm: " + text;
   return format("arm: fault kind %d, node %d, object %06x, code %x", static_cast<int>(fault.kind),
@@ -155,6 +166,8 @@ const char* to_string(EndReason reason) {
       return "measured";
     case EndReason::kNothingMet:
       return "nothing_met";
+    case EndReason::kBrakeFailed:
+      return "brake_failed";
   }
   return "?";
 }
@@ -189,6 +202,7 @@ EndManner end_manner(EndReason reason) {
     case EndReason::kWrenchMissing:
     case EndReason::kOverruns:
     case EndReason::kFeedbackPoor:
+    case EndReason::kBrakeFailed:
       return EndManner::kQuickStop;
   }
   return EndManner::kQuickStop;
@@ -262,12 +276,13 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kOverruns:
       return format("the control loop cannot keep its period: %.0f late cycles", e.value);
     case EndReason::kFeedbackPoor:
-      return format("feedback was missing in %.0f cycles, too many for what the plan was made for",
-                    e.value);
+      return feedback_poor(e);
     case EndReason::kMeasured:
       return "all readings are taken";
     case EndReason::kNothingMet:
       return nothing_met(e);
+    case EndReason::kBrakeFailed:
+      return brake_failed(e, joint);
   }
   return "?";
 }

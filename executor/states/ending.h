@@ -38,6 +38,7 @@ enum class EndReason : std::uint8_t {
   kFeedbackPoor = 22,  ///< value: cycles without all of their feedback, too many of all
   kMeasured = 23,      ///< an identification has all its readings
   kNothingMet = 24,    ///< by an identification's motion; index: axis; value: way, m, signed
+  kBrakeFailed = 25,   ///< index: joint; value: way that it moved with the drives off, bound
 };
 [[nodiscard]] const char* to_string(EndReason reason);
 

@@ -20,6 +20,10 @@ const char* to_string(State state) {
       return "holding";
     case State::kDisabling:
       return "disabling";
+    case State::kWatching:
+      return "watching the brakes";
+    case State::kCatching:
+      return "catching what a brake does not hold";
     case State::kFinished:
       return "finished";
   }
@@ -30,7 +34,7 @@ State next_state(State state, Event event) {
   if (state == State::kFinished) return state;
   // No such event, or below no such state: the memory is not what it was. The drives stop by
   // themselves.
-  if (event > Event::kDisabled) return State::kQuickStopping;
+  if (event > Event::kBrakeFailed) return State::kQuickStopping;
   const auto on = [event](Event awaited) { return event == awaited; };
   switch (state) {
     case State::kWaiting:
@@ -57,7 +61,12 @@ State next_state(State state, Event event) {
       if (on(Event::kHeld)) return State::kDisabling;
       return on(Event::kFault) ? State::kQuickStopping : state;
     case State::kDisabling:
-      return on(Event::kDisabled) ? State::kFinished : state;
+      return on(Event::kDisabled) ? State::kWatching : state;
+    case State::kWatching:
+      if (on(Event::kBrakeFailed)) return State::kCatching;
+      return on(Event::kHeld) ? State::kFinished : state;
+    case State::kCatching:
+      return on(Event::kStop) ? State::kDisabling : state;
     case State::kFinished:
       return state;
   }

@@ -8,9 +8,10 @@
 //      |                     |                               | at rest             |
 //      |                     +---------> kHolding <----------+---------------------+
 //      | stop, fault                        | held
-//      +-------------------------------> kDisabling --disabled--> kFinished
-//                                           ^ at rest
-//   a fault while the drives are on --> kQuickStopping
+//      +-------------------------------> kDisabling --disabled--> kWatching --held--> kFinished
+//                                          ^  ^ at rest               | brake failed
+//   a fault while the drives are on --> kQuickStopping                v
+//                                          +--------- stop -------- kCatching
 //
 // What is not drawn changes nothing.
 
@@ -29,6 +30,9 @@ enum class State : std::uint8_t {
   kHolding = 6,        ///< at rest, still compliant
   kDisabling = 7,      ///< drives going off, brakes on
   kFinished = 8,
+  kWatching = 9,  ///< off: do the brakes hold?
+  kCatching =
+      10,  ///< one does not: under power again where the cell wants that, until told to stop
 };
 [[nodiscard]] const char* to_string(State state);
 
@@ -42,6 +46,7 @@ enum class Event : std::uint8_t {
   kAtRest = 6,
   kHeld = 7,
   kDisabled = 8,
+  kBrakeFailed = 9,
 };
 
 [[nodiscard]] State next_state(State state, Event event);

@@ -87,6 +87,7 @@ std::string Canvas::polygon(std::vector<Point> points_m, const std::string& styl
 std::string Canvas::polyline(const std::vector<Vector3>& points, double width,
                              const std::string& style) const {
   std::vector<Point> points_m;
+  points_m.reserve(points.size());
   for (const Vector3& p : points) points_m.push_back(view_.m(p));
   return "<polyline fill='none' points='" + drawing::points_text(on_page(std::move(points_m)), 2) +
          format("' stroke-width='%.2f' ", width * unit_mm()) + style + "/>\n";

@@ -60,6 +60,7 @@ Point Plot::px(const Point& point) const {
 
 void Plot::polygon(const std::vector<Point>& corners, std::string_view style) {
   std::vector<Point> on_page;
+  on_page.reserve(corners.size());
   for (const Point& corner : corners) on_page.push_back(px(corner));
   marks_ += drawing::polygon(on_page, 1, style);
 }

@@ -170,6 +170,22 @@ TEST(Controller, AForceFaultStopsTheDrivesInTheCycleOfItsSample) {
   EXPECT_EQ(bench.arm.state(), ArmState::kDisabled);
 }
 
+// Voltage off in mid-ramp would drop the axis onto its brake.
+TEST(Controller, TheDrivesHaveTheTimeThatTheirDecelerationTakes) {
+  Cell cell = hand_made_cell();
+  for (Joint& joint : cell.robot.joints) joint.acceleration_max = joint.speed_max / 1.5;
+  Bench bench(touch_and_slide_plan(), {}, cell);
+  bench.run_until(State::kRunning);
+  bench.arm.drift_mps = 0.05;
+  bench.arm.push[2] = 70.0;
+  bench.run_until(State::kQuickStopping);
+  const auto cycles_of = [](double time_s) { return static_cast<int>(1e9 * time_s / kCycle_ns); };
+  for (int i = 0; i < cycles_of(1.5); ++i) bench.step();
+  EXPECT_EQ(bench.controller.state(), State::kQuickStopping);
+  for (int i = 0; i < cycles_of(0.2); ++i) bench.step();
+  EXPECT_GT(bench.controller.state(), State::kQuickStopping);
+}
+
 TEST(Controller, AFaultOfTheArmEndsTheRunWithItsReason) {
   Bench bench(touch_and_slide_plan());
   bench.run_until(State::kRunning);

@@ -86,8 +86,9 @@ TEST(IdentifyMotion, AContactIsMeasuredAndTheJsonHasTheNumbers) {
               0.01 * bench.arm.stiffness_Npm);
   EXPECT_EQ(json.at("cycle").at("cycles"), bench.cycles);
   EXPECT_GT(json.at("peak_force_N").get<double>(), 20.0);
-  EXPECT_EQ(bench.states, (std::set<State>{State::kWaiting, State::kTaring, State::kRunning,
-                                           State::kHolding, State::kDisabling, State::kFinished}));
+  EXPECT_EQ(bench.states,
+            (std::set<State>{State::kWaiting, State::kTaring, State::kRunning, State::kHolding,
+                             State::kDisabling, State::kWatching, State::kFinished}));
   EXPECT_FALSE(result.ended_badly());
 }
 

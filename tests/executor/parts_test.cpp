@@ -17,6 +17,7 @@
 #include "executor/sensing/sensor_tare.h"
 #include "executor/sensing/wrench_estimator.h"
 #include "executor/states/state_machine.h"
+#include "shared/system/record_file.h"
 #include "tests/support/hand_made.h"
 
 namespace tenon::executor {
@@ -222,7 +223,7 @@ TEST(BlackBox, ItKeepsTheLastCyclesAndWritesALineForEach) {
 }
 
 TEST(StateMachine, NothingLeadsOutOfFinishedAndAFaultWithDrivesOnIsAQuickStop) {
-  for (int e = 0; e <= static_cast<int>(Event::kDisabled); ++e) {
+  for (int e = 0; e <= static_cast<int>(Event::kBrakeFailed); ++e) {
     EXPECT_EQ(next_state(State::kFinished, static_cast<Event>(e)), State::kFinished);
   }
   for (const State on :
@@ -231,26 +232,30 @@ TEST(StateMachine, NothingLeadsOutOfFinishedAndAFaultWithDrivesOnIsAQuickStop) {
   }
   EXPECT_EQ(next_state(State::kWaiting, Event::kFault), State::kDisabling);
   EXPECT_EQ(next_state(State::kQuickStopping, Event::kAtRest), State::kDisabling);
-  EXPECT_EQ(next_state(State::kDisabling, Event::kDisabled), State::kFinished);
+  EXPECT_EQ(next_state(State::kDisabling, Event::kDisabled), State::kWatching);
+  EXPECT_EQ(next_state(State::kWatching, Event::kHeld), State::kFinished);
 }
 
 TEST(StateMachine, ItHasTheArrowsOfItsDiagramAndNoOther) {
   // A row a state, in the order of the enumerators: waiting, taring, approaching, running,
-  // stopping, quick stopping, holding, disabling, finished. A column an event: enabled, tared, at
-  // start, work ended, stop, fault, at rest, held, disabled.
-  constexpr std::array<const char*, 9> kNext = {"1 0 0 0 7 7 0 0 0",  //
-                                                "1 2 1 1 6 5 1 1 1",  //
-                                                "2 2 3 2 4 5 2 2 2",  //
-                                                "3 3 3 6 4 5 3 3 3",  //
-                                                "4 4 4 4 4 5 6 4 4",  //
-                                                "5 5 5 5 5 5 7 5 5",  //
-                                                "6 6 6 6 6 5 6 7 6",  //
-                                                "7 7 7 7 7 7 7 7 8",  //
-                                                "8 8 8 8 8 8 8 8 8"};
+  // stopping, quick stopping, holding, disabling, finished, watching (9), catching (a). A column an
+  // event: enabled, tared, at start, work ended, stop, fault, at rest, held, disabled, brake
+  // failed.
+  constexpr std::array<const char*, 11> kNext = {"1 0 0 0 7 7 0 0 0 0",  //
+                                                 "1 2 1 1 6 5 1 1 1 1",  //
+                                                 "2 2 3 2 4 5 2 2 2 2",  //
+                                                 "3 3 3 6 4 5 3 3 3 3",  //
+                                                 "4 4 4 4 4 5 6 4 4 4",  //
+                                                 "5 5 5 5 5 5 7 5 5 5",  //
+                                                 "6 6 6 6 6 5 6 7 6 6",  //
+                                                 "7 7 7 7 7 7 7 7 9 7",  //
+                                                 "8 8 8 8 8 8 8 8 8 8",  //
+                                                 "9 9 9 9 9 9 9 8 9 a",  //
+                                                 "a a a a 7 a a a a a"};
   for (std::size_t state = 0; state < kNext.size(); ++state) {
-    for (std::size_t event = 0; event < kNext.size(); ++event) {
+    for (std::size_t event = 0; event < 10; ++event) {
       EXPECT_EQ(static_cast<int>(next_state(static_cast<State>(state), static_cast<Event>(event))),
-                kNext.at(state)[2 * event] - '0')
+                std::stoi(std::string(1, kNext.at(state)[2 * event]), nullptr, 16))
           << state << " " << event;
     }
   }

@@ -19,7 +19,6 @@ constexpr std::size_t kLabelBytesMax = 32;
 constexpr std::int64_t kSignatureSave = 0x65766173;  // "save"
 constexpr std::int64_t kSignatureLoad = 0x64616F6C;  // "load"
 constexpr std::uint32_t kAbortCannotStore = 0x08000020;
-constexpr std::uint16_t kEmergencySyncLength = 0x8240;
 constexpr std::int64_t kToPreOperational = 0;  // 1029h
 constexpr std::int64_t kToStopped = 2;
 constexpr std::uint8_t kSdoBytes = 8;
@@ -225,7 +224,7 @@ void SlaveNode::on_sync(const CanFrame& frame, std::int64_t now_ns) {
   if (state_ != NmtState::kOperational) return;
   const bool counted = sync_overflow_->value != 0;
   const bool good = frame.length == (counted ? 1 : 0);
-  set_error(!good, kEmergencySyncLength);
+  set_error(!good, canopen::kEmergencySyncLength);
   if (!good) return;
   sync_ns_ = now_ns;
   application_.on_sample();

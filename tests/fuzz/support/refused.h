@@ -17,11 +17,7 @@ namespace tenon::fuzz {
 /// A folder of this process's own; in memory where the system has one there.
 class InputFolder {
  public:
-  InputFolder() {
-    const std::filesystem::path memory = "/dev/shm";
-    path_ =
-        (std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path()) /
-        ("tenon_fuzz_" + std::to_string(::getpid()));
+  InputFolder() : path_(parent() / ("tenon_fuzz_" + std::to_string(::getpid()))) {
     std::filesystem::create_directories(path_);
   }
   InputFolder(const InputFolder&) = delete;
@@ -38,6 +34,11 @@ class InputFolder {
   }
 
  private:
+  static std::filesystem::path parent() {
+    const std::filesystem::path memory = "/dev/shm";
+    return std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path();
+  }
+
   std::filesystem::path path_;
 };
 

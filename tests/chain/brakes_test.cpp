@@ -1,0 +1,74 @@
+// After the drives are off, the brakes hold or one does not; and what a stop costs until they do.
+// The truth is the virtual arm's.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "tests/support/faulty_options.h"
+#include "tests/support/planned.h"
+#include "tests/support/whole_run.h"
+
+namespace tenon::tests {
+namespace {
+
+using executor::EndReason;
+
+constexpr std::size_t kVertical = 2;  // the gantry's z
+
+TEST(Brakes, OneThatDoesNotHoldIsNamedAndTheRunIsNotDone) {
+  const auto result = WholeRun(gantry_cell(), box_task(), box_plan("1"),
+                               with_faults({"brake-failure:node=3,time_s=9"}))
+                          .run();
+  EXPECT_EQ(result.ending.reason, EndReason::kBrakeFailed) << result.reason;
+  EXPECT_TRUE(result.ending.disable_confirmed);
+  EXPECT_EQ(result.ending.index, static_cast<int>(kVertical));
+  EXPECT_NE(result.reason.find("joint z moved by"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("its brake does not hold"), std::string::npos) << result.reason;
+}
+
+TEST(Brakes, WhereTheCellWantsItPowerComesBackUntilTheUserStops) {
+  Cell cell = gantry_cell();
+  cell.hold_if_brake_fails = true;
+  WholeRun run(cell, box_task(), box_plan("1"), with_faults({"brake-failure:node=3,time_s=9"}));
+  ASSERT_TRUE(run.prepare());
+  while (run.cycle() && run.controller().state() != executor::State::kCatching) {
+  }
+  ASSERT_EQ(run.controller().state(), executor::State::kCatching);
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(run.cycle());
+  const double held = run.result().truth.drives[kVertical].position;
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(run.cycle());
+  const sim::DriveTruth drive = run.result().truth.drives[kVertical];
+  EXPECT_NEAR(drive.position, held, 1e-4) << "it is held";
+  EXPECT_EQ(drive.state, "operation enabled");
+  run.controller().request_stop();
+  for (int i = 0; i < 2000 && run.cycle(); ++i) {
+  }
+  EXPECT_TRUE(run.controller().finished());
+  EXPECT_EQ(run.result().ending.reason, EndReason::kBrakeFailed);
+}
+
+// A fault of the sensor, and then the quick stop: by how much does an axis under gravity move from
+// rest to the brake?
+TEST(Brakes, AStopAfterAFaultLetsNoAxisDrop) {
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"),
+               with_faults({"silent-node:node=4,time_s=4"}));
+  ASSERT_TRUE(run.prepare());
+  double lowest = 1.0;
+  double at_rest = 0.0;
+  while (run.cycle()) {
+    const double position = run.result().truth.drives[kVertical].position;
+    if (run.controller().state() == executor::State::kDisabling && at_rest == 0.0) {
+      at_rest = position;
+    }
+    if (at_rest != 0.0) lowest = std::min(lowest, position);
+  }
+  EXPECT_EQ(run.result().ending.reason, EndReason::kArmFault);
+  EXPECT_TRUE(run.result().ending.disable_confirmed) << "the drives said so";
+  EXPECT_LT(std::abs(at_rest - lowest), 1e-5);
+}
+
+}  // namespace
+}  // namespace tenon::tests
