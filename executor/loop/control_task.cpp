@@ -56,7 +56,7 @@ ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& 
     if (const auto refused = command_joints()) take(*refused);
     velocity = complete_motion();
   }
-  supervision_.commanded(velocity);
+  supervision_.commanded(velocity, joints_.position());
   record_.velocity = data_of(velocity);
   const Command command{request(), joints_.position()};
   write_record(now_ns, feedback, command);

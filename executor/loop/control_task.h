@@ -74,6 +74,8 @@ class ControlTask {
   [[nodiscard]] const CycleRecord& record() const noexcept { return record_; }
   [[nodiscard]] const Cell& cell() const noexcept { return cell_; }
   [[nodiscard]] double cycle_s() const noexcept { return cycle_s_; }
+  /// Cycles since the tare in which guarded moves could see no sample.
+  [[nodiscard]] std::uint64_t blind_cycles() const noexcept { return supervision_.blind_cycles(); }
   /// Largest external force and torque since the tare, N and Nm.
   [[nodiscard]] double peak_force_N() const noexcept { return supervision_.peak_force_N(); }
   [[nodiscard]] double peak_torque_Nm() const noexcept { return supervision_.peak_torque_Nm(); }

@@ -7,15 +7,21 @@ namespace tenon::executor {
 
 Supervision::Supervision(const Cell& cell, const ToolKinematics& kinematics,
                          const Parameters& parameters)
-    : cell_(cell), kinematics_(kinematics), parameters_(parameters), wrench_(cell) {}
+    : cell_(cell),
+      kinematics_(kinematics),
+      parameters_(parameters),
+      wrench_(cell),
+      following_watch_(cell.robot) {}
 
 std::optional<Ending> Supervision::update(const ArmFeedback& feedback, bool following) {
   take_joints(feedback);
   const std::optional<Ending> sensor = take_wrench(feedback);
   const std::optional<Ending> arm = watch_arm(feedback, following);
+  const std::optional<Ending> astray = watch_following(feedback, following);
   const std::optional<Ending> force = watch_force(feedback);
   if (sensor) return sensor;
-  return arm ? arm : force;
+  if (arm) return arm;
+  return force ? force : astray;
 }
 
 void Supervision::tare(const Vector6& mean_raw) {
@@ -40,6 +46,9 @@ std::optional<Ending> Supervision::take_wrench(const ArmFeedback& feedback) {
   wrench_age_s_ = feedback.wrench_fresh ? 0.0 : wrench_age_s_ + 1e-6 * cell_.robot.cycle_us;
   wrench_usable_ = feedback.wrench_fresh && distrusted_cycles_ == 0;
   if (distrusted_cycles_ > 0) --distrusted_cycles_;
+  const bool blind = tared_ && !wrench_usable_;
+  blind_s_ = blind ? blind_s_ + 1e-6 * cell_.robot.cycle_us : 0.0;
+  blind_cycles_ += blind ? 1 : 0;
   if (!feedback.wrench_fresh || !known_) return std::nullopt;
   switch (wrench_.update(feedback.wrench, tool_)) {
     case WrenchEstimator::Status::kGood:
@@ -78,7 +87,23 @@ std::optional<Ending> Supervision::watch_arm(const ArmFeedback& feedback, bool f
                   .value = wrench_age_s_,
                   .bound = parameters_.wrench_age_max_s};
   }
+  if (blind_s_ > parameters_.blind_max_s) {
+    return Ending{.reason = EndReason::kBlind, .value = blind_s_, .bound = parameters_.blind_max_s};
+  }
   return std::nullopt;
+}
+
+std::optional<Ending> Supervision::watch_following(const ArmFeedback& feedback, bool following) {
+  if (!following) {
+    following_watch_.rest_at(joints_);
+    return std::nullopt;
+  }
+  const auto excess = following_watch_.update(joints_, feedback.joints_fresh);
+  if (!excess) return std::nullopt;
+  return Ending{.reason = EndReason::kFollowingError,
+                .index = excess->joint,
+                .value = excess->error,
+                .bound = excess->bound};
 }
 
 std::optional<Ending> Supervision::watch_force(const ArmFeedback& feedback) {

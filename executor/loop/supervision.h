@@ -1,13 +1,14 @@
 #pragma once
-// Takes in what the arm says and watches it: joints that answer, a sensor that is sound and fresh,
-// a force within the cell's bounds. What ends a run from outside comes back as an Ending. It
-// commands nothing. Real-time, one thread, no allocation.
+// Takes in what the arm says and watches it: joints that answer and follow, a sensor that is sound
+// and fresh, a force within the cell's bounds. What ends a run from outside comes back as an
+// Ending. It commands nothing. Real-time, one thread, no allocation.
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
 #include "executor/motion/tool_kinematics.h"
+#include "executor/sensing/following_watch.h"
 #include "executor/sensing/wrench_estimator.h"
 #include "executor/states/ending.h"
 #include "shared/cell/cell.h"
@@ -20,6 +21,7 @@ class Supervision {
   struct Parameters {
     int feedback_misses_max = 10;  ///< cycles in a row
     double wrench_age_max_s = 0.05;
+    double blind_max_s = 0.1;  ///< without a sample that guarded moves may see
   };
 
   /// @param kinematics outlives this
@@ -33,8 +35,12 @@ class Supervision {
   void distrust_samples(int cycles) { distrusted_cycles_ = cycles; }
   /// From now on the mean raw reading means no contact, and the force is watched.
   void tare(const Vector6& mean_raw);
-  /// Once a cycle, after update(): the velocity commanded to the tool, task axes.
-  void commanded(const Vector6& velocity) { wrench_.commanded(velocity); }
+  /// Once a cycle, after update(): the velocity commanded to the tool, task axes, and the joints'
+  /// positions.
+  void commanded(const Vector6& velocity, const JointVector& position) {
+    wrench_.commanded(velocity);
+    following_watch_.commanded(position);
+  }
 
   /// Every joint has answered at least once.
   [[nodiscard]] bool known() const { return known_; }
@@ -45,6 +51,8 @@ class Supervision {
   [[nodiscard]] const Vector6& wrench() const { return wrench_.external(); }
   /// It is a fresh sample, and guarded moves may see it.
   [[nodiscard]] bool wrench_usable() const { return wrench_usable_; }
+  /// Cycles since the tare in which guarded moves could see no sample.
+  [[nodiscard]] std::uint64_t blind_cycles() const { return blind_cycles_; }
   /// Largest external force and torque since the tare, N and Nm.
   [[nodiscard]] double peak_force_N() const { return peak_force_N_; }
   [[nodiscard]] double peak_torque_Nm() const { return peak_torque_Nm_; }
@@ -52,6 +60,7 @@ class Supervision {
  private:
   void take_joints(const ArmFeedback& feedback);
   [[nodiscard]] std::optional<Ending> take_wrench(const ArmFeedback& feedback);
+  [[nodiscard]] std::optional<Ending> watch_following(const ArmFeedback& feedback, bool following);
   [[nodiscard]] std::optional<Ending> watch_arm(const ArmFeedback& feedback, bool following) const;
   [[nodiscard]] std::optional<Ending> watch_force(const ArmFeedback& feedback);
 
@@ -59,6 +68,7 @@ class Supervision {
   const ToolKinematics& kinematics_;
   Parameters parameters_;
   WrenchEstimator wrench_;
+  FollowingWatch following_watch_;
 
   JointVector joints_{};
   std::array<int, kMaxJoints> misses_{};
@@ -68,6 +78,8 @@ class Supervision {
   double wrench_age_s_ = 0.0;
   int distrusted_cycles_ = 0;
   bool wrench_usable_ = false;
+  double blind_s_ = 0.0;
+  std::uint64_t blind_cycles_ = 0;
   double peak_force_N_ = 0.0;
   double peak_torque_Nm_ = 0.0;
 };

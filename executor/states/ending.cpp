@@ -1,5 +1,6 @@
 #include "executor/states/ending.h"
 
+#include <array>
 #include <cmath>
 
 #include "shared/base/text.h"
@@ -89,9 +90,22 @@ std::string feedback_missing(const Ending& e, const Joint& joint) {
          format(" did not answer for %.0f cycles in a row, at most %.0f", e.value, e.bound);
 }
 
+std::string blind(const Ending& e) {
+  return format(
+      "no sample of the wrench could be trusted for %.3g s, at most %.3g: the loop is late, or "
+      "answers are missing, again and again",
+      e.value, e.bound);
+}
+
 std::string feedback_poor(const Ending& e) {
   return format("feedback was missing in %.0f cycles, too many for what the plan was made for",
                 e.value);
+}
+
+std::string following_error(const Ending& e, const Joint& joint) {
+  return format(
+      "node %d (%s) is %.3g %s away from where it was commanded, at most %.3g: it does not follow",
+      static_cast<int>(joint.node), joint.name.c_str(), e.value, joint_unit(joint), e.bound);
 }
 
 std::string brake_failed(const Ending& e, const Joint& joint) {
@@ -112,64 +126,53 @@ std::string nothing_met(const Ending& e) {
                 e.value < 0.0 ? '-' : '+', axis_name(e.index));
 }
 
+std::string of_a_joint(const Ending& e, const Joint& joint, const Plan& plan) {
+  if (e.reason == EndReason::kOtherBranch) {
+    return "joint " + joint.name + off_start(joint_unit(joint), e, plan);
+  }
+  if (e.reason == EndReason::kTareMoving) return tare_moving(e, joint);
+  if (e.reason == EndReason::kJointLimit) return joint_limit(e, joint);
+  if (e.reason == EndReason::kJointSpeed) return joint_speed(e, joint);
+  if (e.reason == EndReason::kFeedbackMissing) return feedback_missing(e, joint);
+  if (e.reason == EndReason::kBrakeFailed) return brake_failed(e, joint);
+  return following_error(e, joint);
+}
+
 }  // namespace
 
 const char* to_string(EndReason reason) {
-  switch (reason) {
-    case EndReason::kNone:
-      return "none";
-    case EndReason::kPlanDone:
-      return "plan_done";
-    case EndReason::kPlanFailed:
-      return "plan_failed";
-    case EndReason::kStopRequested:
-      return "stop_requested";
-    case EndReason::kNotAtStart:
-      return "not_at_start";
-    case EndReason::kTareUnsteady:
-      return "tare_unsteady";
-    case EndReason::kTareMoving:
-      return "tare_moving";
-    case EndReason::kContactOnApproach:
-      return "contact_on_approach";
-    case EndReason::kUnreachable:
-      return "unreachable";
-    case EndReason::kJointLimit:
-      return "joint_limit";
-    case EndReason::kJointSpeed:
-      return "joint_speed";
-    case EndReason::kForceFault:
-      return "force_fault";
-    case EndReason::kTorqueFault:
-      return "torque_fault";
-    case EndReason::kSensorSaturated:
-      return "sensor_saturated";
-    case EndReason::kSensorNotFinite:
-      return "sensor_not_finite";
-    case EndReason::kArmFault:
-      return "arm_fault";
-    case EndReason::kArmNotEnabled:
-      return "arm_not_enabled";
-    case EndReason::kEnableTimeout:
-      return "enable_timeout";
-    case EndReason::kFeedbackMissing:
-      return "feedback_missing";
-    case EndReason::kWrenchMissing:
-      return "wrench_missing";
-    case EndReason::kOverruns:
-      return "overruns";
-    case EndReason::kOtherBranch:
-      return "other_branch";
-    case EndReason::kFeedbackPoor:
-      return "feedback_poor";
-    case EndReason::kMeasured:
-      return "measured";
-    case EndReason::kNothingMet:
-      return "nothing_met";
-    case EndReason::kBrakeFailed:
-      return "brake_failed";
-  }
-  return "?";
+  // By the enumerators' values.
+  constexpr std::array kNames = {"none",
+                                 "plan_done",
+                                 "plan_failed",
+                                 "stop_requested",
+                                 "not_at_start",
+                                 "tare_unsteady",
+                                 "tare_moving",
+                                 "contact_on_approach",
+                                 "unreachable",
+                                 "joint_limit",
+                                 "joint_speed",
+                                 "force_fault",
+                                 "torque_fault",
+                                 "sensor_saturated",
+                                 "sensor_not_finite",
+                                 "arm_fault",
+                                 "arm_not_enabled",
+                                 "enable_timeout",
+                                 "feedback_missing",
+                                 "wrench_missing",
+                                 "overruns",
+                                 "other_branch",
+                                 "feedback_poor",
+                                 "measured",
+                                 "nothing_met",
+                                 "brake_failed",
+                                 "following_error",
+                                 "blind"};
+  static_assert(kNames.size() == static_cast<std::size_t>(EndReason::kBlind) + 1);
+  const auto index = static_cast<std::size_t>(reason);
+  return index < kNames.size() ? kNames[index] : "?";
 }
 
 EndManner end_manner(EndReason reason) {
@@ -203,6 +206,8 @@ EndManner end_manner(EndReason reason) {
     case EndReason::kOverruns:
     case EndReason::kFeedbackPoor:
     case EndReason::kBrakeFailed:
+    case EndReason::kFollowingError:
+    case EndReason::kBlind:
       return EndManner::kQuickStop;
   }
   return EndManner::kQuickStop;
@@ -228,7 +233,6 @@ std::string describe(const Transition& transition) {
 
 std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
                      const std::string& arm_fault_text) {
-  const Joint joint = joint_of(cell, e.index);
   switch (e.reason) {
     case EndReason::kNone:
       return "still running";
@@ -240,20 +244,12 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return "stopped on request";
     case EndReason::kNotAtStart:
       return format("the tool's %s", axis_name(e.index)) + off_start(axis_unit(e.index), e, plan);
-    case EndReason::kOtherBranch:
-      return "joint " + joint.name + off_start(joint_unit(joint), e, plan);
     case EndReason::kTareUnsteady:
       return tare_unsteady(e);
-    case EndReason::kTareMoving:
-      return tare_moving(e, joint);
     case EndReason::kContactOnApproach:
       return touched(e);
     case EndReason::kUnreachable:
       return unreachable(e);
-    case EndReason::kJointLimit:
-      return joint_limit(e, joint);
-    case EndReason::kJointSpeed:
-      return joint_speed(e, joint);
     case EndReason::kForceFault:
       return format("external force %.4g N above force_fault_N = %.4g", e.value, e.bound);
     case EndReason::kTorqueFault:
@@ -269,10 +265,10 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
                     to_string(static_cast<ArmState>(e.index)));
     case EndReason::kEnableTimeout:
       return format("the arm was not enabled within %.3g s", e.value);
-    case EndReason::kFeedbackMissing:
-      return feedback_missing(e, joint);
     case EndReason::kWrenchMissing:
       return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);
+    case EndReason::kBlind:
+      return blind(e);
     case EndReason::kOverruns:
       return format("the control loop cannot keep its period: %.0f late cycles", e.value);
     case EndReason::kFeedbackPoor:
@@ -281,8 +277,14 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return "all readings are taken";
     case EndReason::kNothingMet:
       return nothing_met(e);
+    case EndReason::kOtherBranch:
+    case EndReason::kTareMoving:
+    case EndReason::kJointLimit:
+    case EndReason::kJointSpeed:
+    case EndReason::kFeedbackMissing:
     case EndReason::kBrakeFailed:
-      return brake_failed(e, joint);
+    case EndReason::kFollowingError:
+      return of_a_joint(e, joint_of(cell, e.index), plan);
   }
   return "?";
 }

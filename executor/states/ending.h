@@ -39,6 +39,8 @@ enum class EndReason : std::uint8_t {
   kMeasured = 23,      ///< an identification has all its readings
   kNothingMet = 24,    ///< by an identification's motion; index: axis; value: way, m, signed
   kBrakeFailed = 25,   ///< index: joint; value: way that it moved with the drives off, bound
+  kFollowingError = 26,  ///< index: joint; value: m or rad from all that it was commanded, bound
+  kBlind = 27,           ///< value: s without a sample that guarded moves may see, bound
 };
 [[nodiscard]] const char* to_string(EndReason reason);
 

@@ -106,6 +106,7 @@ RunResult common_result(const ControlTask& task, const Plan& plan, const CycleRu
   result.records_dropped = records_dropped;
   result.cycle_s = task.cycle_s();
   result.duration_s = result.cycle_s * static_cast<double>(result.statistics.cycles);
+  result.blind_cycles = task.blind_cycles();
   result.peak_force_N = task.peak_force_N();
   result.peak_torque_Nm = task.peak_torque_Nm();
   return result;
@@ -191,6 +192,7 @@ std::string to_json(const RunResult& result, const Cell& cell) {
                    {"cycles", result.statistics.cycles},
                    {"late_cycles", result.statistics.late_cycles},
                    {"incomplete_cycles", result.statistics.incomplete_cycles},
+                   {"blind_cycles", result.blind_cycles},
                    {"wakeup_late", json_of(result.statistics.wakeup)},
                    {"compute", json_of(result.statistics.compute)},
                    {"records_dropped", result.records_dropped}};

@@ -223,6 +223,21 @@ TEST(Chain, AfterAMissingAnswerGuardedMovesTakeNoSamplesForAFewCycles) {
   EXPECT_EQ(run.result().ending.reason, EndReason::kPlanDone) << run.result().reason;
 }
 
+TEST(Chain, ALoopThatIsLateEveryFourthCycleIsNotBlindForEver) {
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0));
+  into_motion(run);
+  const auto blind_before = run.controller().blind_cycles();
+  std::uint64_t cycles = 0;
+  do {
+    if (cycles % 4 == 0) run.controller().distrust_samples();
+    ++cycles;
+  } while (run.controller().state() == State::kRunning && run.cycle());
+  EXPECT_EQ(run.controller().ending().reason, EndReason::kBlind);
+  EXPECT_NEAR(static_cast<double>(cycles), 0.1 / 0.002, 3.0);
+  EXPECT_NEAR(static_cast<double>(run.controller().blind_cycles() - blind_before), 0.1 / 0.002,
+              3.0);
+}
+
 TEST(Chain, TheBusGoingDownInMidMotionIsANamedFault) {
   WholeRun run(gantry_cell(), box_task(), box_plan("1"), off_by(0.0, 0.0));
   into_motion(run);

@@ -216,6 +216,13 @@ Drive402::Demand Drive402::demand(std::int64_t step_ns) {
       encoder_jump_counts_;
   demand.velocity_countsps =
       demand.powered ? motion_.velocity_countsps() : measurement_.velocity_countsps;
+  if (faults_.find(FaultKind::kFrozenDrive) == nullptr) {
+    frozen_counts_.reset();
+  } else if (demand.powered) {
+    if (!frozen_counts_) frozen_counts_ = demand.position_counts;
+    demand.position_counts = *frozen_counts_;
+    demand.velocity_countsps = 0.0;
+  }
   demand.torque_max_permille = torque_max_permille();
   return demand;
 }
@@ -249,7 +256,7 @@ void Drive402::measured(const Measurement& measurement, std::int64_t step_ns) {
 
 void Drive402::watch_following_error(std::int64_t step_ns) {
   const std::int64_t window = objects_.following_window.value;
-  const bool watched = window != 0 && window != kWindowOff &&
+  const bool watched = window != 0 && window != kWindowOff && !frozen_counts_ &&
                        (motion_.phase() == DriveMotion::Phase::kFollowing ||
                         motion_.phase() == DriveMotion::Phase::kHolding);
   const double error_counts = std::abs(motion_.position_counts() - measurement_.position_counts);

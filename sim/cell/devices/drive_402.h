@@ -56,8 +56,8 @@ class Drive402 final : private NodeApplication {
   void set_supply(double volts);
 
   /// Begins a fault now, that is at the time of the last advance(): node reset, silent node,
-  /// emergency, encoder jump, brake failure, torque loss. Whether it happens is drawn once. Others
-  /// are not a drive's, and ignored.
+  /// emergency, encoder jump, brake failure, torque loss, frozen drive. Whether it happens is drawn
+  /// once. Others are not a drive's, and ignored.
   void inject(const Fault& fault);
 
   [[nodiscard]] State state() const { return state_; }
@@ -101,8 +101,9 @@ class Drive402 final : private NodeApplication {
   std::uint16_t last_controlword_ = 0;
   std::optional<State> afterwards_;  ///< entered when the motion is done
   bool halted_ = false;
-  Measurement measurement_;           ///< as the encoder tells it
-  double encoder_jump_counts_ = 0.0;  ///< of a fault
+  Measurement measurement_;              ///< as the encoder tells it
+  double encoder_jump_counts_ = 0.0;     ///< of a fault
+  std::optional<double> frozen_counts_;  ///< of a fault: where the axis is held meanwhile
   double temperature_degC_;
   std::int64_t outside_window_ns_ = 0;
 };

@@ -25,6 +25,7 @@ enum class FaultKind : std::uint8_t {
   kTornForce = 13,       ///< the two halves of a wrench come from different samples
   kSaturatedForce = 14,  ///< the sensor reads its range
   kTorqueLoss = 15,      ///< the joint's drive gives `value` times its effort, 0 <= value < 1
+  kFrozenDrive = 16,     ///< the drive stands still under power, and says that all is well
 };
 
 /// Who carries it out.
@@ -52,6 +53,7 @@ enum class FaultTarget : std::uint8_t {
     case FaultKind::kEncoderJump:
     case FaultKind::kBrakeFailure:
     case FaultKind::kTorqueLoss:
+    case FaultKind::kFrozenDrive:
       return FaultTarget::kDrive;
     case FaultKind::kStaleForce:
     case FaultKind::kTornForce:

@@ -22,7 +22,7 @@ struct Kind {
   const char* example = "";
 };
 
-constexpr std::array<Kind, 16> kKinds{{
+constexpr std::array<Kind, 17> kKinds{{
     {FaultKind::kDrop, "drop", false, nullptr, 0, 0, "a frame is lost for all receivers",
      "drop:node=3,time_s=2,duration_s=0.5,probability=0.1,seed=7"},
     {FaultKind::kDelay, "delay", false, "delay_s", 1e-6, 10.0, "a frame arrives delay_s late",
@@ -60,6 +60,9 @@ constexpr std::array<Kind, 16> kKinds{{
      "the sensor reads the end of its range", "saturated-force:time_s=3,duration_s=0.01"},
     {FaultKind::kTorqueLoss, "torque-loss", true, "share", 0.0, 0.999,
      "the joint's drive gives that share of its effort", "torque-loss:node=3,time_s=3,share=0.5"},
+    {FaultKind::kFrozenDrive, "frozen-drive", true, nullptr, 0, 0,
+     "the drive stands still under power and says that all is well",
+     "frozen-drive:node=1,time_s=3,duration_s=1"},
 }};
 
 const Kind& kind_of(FaultKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
