@@ -96,12 +96,13 @@ TEST(EvaluationTrial, EveryJobRunsOnceOnAnyNumberOfThreads) {
 TEST(EvaluationTrial, WhatARunThrowsEndsTheOthersAndComesBack) {
   std::atomic<int> runs = 0;
   const auto run = [&](const Job& /*job*/) -> sim::Run {
-    if (++runs == 3) throw std::runtime_error("third");
+    if (++runs >= 3) throw std::runtime_error("third");
     return {};
   };
   EXPECT_THROW(run_all(jobs_of(1, 1000, 0, 1), 2, run, [](const Job&, const sim::Run&) {}),
                std::runtime_error);
-  EXPECT_LT(runs, 1000);
+  // Each of the two threads was in one run at most when the first threw.
+  EXPECT_LE(runs, 4);
 }
 
 TEST(EvaluationQuantity, BinsAreHalfOpenButForTheLast) {
