@@ -1,6 +1,7 @@
 #include "sim/physics/scene.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 #include "sim/physics/contacts/contact_points.h"
@@ -35,7 +36,7 @@ void Scene::set_oversize(double oversize_m) {
   for (ShapeGeometry& shape : held_) shape.set_oversize(oversize_m);
 }
 
-Scene::Contacts Scene::collide(OdeWorld& world, double step_s, const ContactLaw& law) {
+Scene::Contacts Scene::find_contacts(bool turns) {
   points_.clear();
   touching_.clear();
   PairPoints buffer;
@@ -49,10 +50,34 @@ Scene::Contacts Scene::collide(OdeWorld& world, double step_s, const ContactLaw&
   }
   Contacts result;
   result.depth_max_m = deepest_m(points_);
-  thin_out(points_);
+  (turns ? thin_out : keep_deepest)(points_);
   result.points = points_.size();
-  joints_.make(world, points_, law, step_s);
   return result;
+}
+
+void Scene::make_joints(OdeWorld& world, double step_s, const ContactLaw& law) {
+  joints_.make(world, points_, law, step_s);
+}
+
+void Scene::clear_contacts() {
+  points_.clear();
+  touching_.clear();
+}
+
+double Scene::clearance_m() const {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const ShapeGeometry& held : held_) {
+    for (const ShapeGeometry& environment : environment_) {
+      nearest_m = std::min(nearest_m, held.gap_m(environment));
+    }
+  }
+  return nearest_m;
+}
+
+double Scene::reach_m() const {
+  double reach_m = 0.0;
+  for (const ShapeGeometry& held : held_) reach_m = std::max(reach_m, held.reach_m());
+  return reach_m;
 }
 
 double Scene::overlap_m() const {

@@ -39,8 +39,18 @@ class Scene {
     std::size_t points = 0;
     double depth_max_m = 0.0;
   };
-  /// Makes this step's contact joints. Call before OdeWorld::step().
-  Contacts collide(OdeWorld& world, double step_s, const ContactLaw& law);
+  /// Finds where the shapes touch. @param turns whether the held part can rotate
+  Contacts find_contacts(bool turns);
+  /// Makes the joints of the contacts that were found. Call before OdeWorld::step().
+  void make_joints(OdeWorld& world, double step_s, const ContactLaw& law);
+  /// There are no contacts: what find_contacts() would find where all shapes are apart.
+  void clear_contacts();
+
+  /// A distance that the held part may move in any way without touching anything, m; may be 0 where
+  /// nothing touches.
+  [[nodiscard]] double clearance_m() const;
+  /// No point of the held part is farther than this from its body's origin.
+  [[nodiscard]] double reach_m() const;
 
   /// After the step: force and torque of the environment on the attached body, world axes, about
   /// the body's origin.
@@ -54,7 +64,7 @@ class Scene {
     std::size_t held = 0;
     std::size_t environment = 0;
   };
-  /// Of the last collide(), each pair once.
+  /// Of the last contacts, each pair once.
   [[nodiscard]] const std::vector<Pair>& pairs() const { return touching_; }
   /// "held-environment"
   [[nodiscard]] std::string name(const Pair& pair) const;
@@ -65,7 +75,7 @@ class Scene {
   std::deque<ShapeGeometry> held_;
   std::deque<ShapeGeometry> environment_;
   double oversize_m_ = 0.0;
-  std::vector<dContactGeom> points_;  // of the last collide(), thinned out
+  std::vector<dContactGeom> points_;  // of the last contacts, thinned out
   ContactJoints joints_;
   std::vector<Pair> touching_;
 };

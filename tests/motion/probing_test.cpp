@@ -83,6 +83,7 @@ Arrival through_ode(const MoveParameters& parameters, const Spike& spike, double
     if (output.phase == GuardedMove::Phase::kDone) break;
     tool.drive(output.setpoint, step_s);
     world.step(step_s);
+    tool.follow();
   }
   EXPECT_EQ(move.result()->outcome, Outcome::kReached);
   arrival.pose = move.result()->pose;

@@ -73,6 +73,21 @@ TEST(ContactPoints, FacesApartAreThinnedApart) {
   EXPECT_GE(points.size() - above, 2U);
 }
 
+TEST(ContactPoints, OfAPartThatCannotRotateTheDeepestOfEachFaceStays) {
+  std::vector<dContactGeom> points;
+  for (int i = 0; i < 4; ++i) {
+    const double depth_m = i == 2 ? 2e-4 : 1e-4;
+    points.push_back(point({0.01 * i, 0.0, 0.0}, Vector3::UnitZ(), depth_m));
+    points.push_back(point({0.0, 0.01 * i, 0.0}, Vector3::UnitX(), depth_m));
+  }
+  keep_deepest(points);
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].normal[2], 1.0);
+  EXPECT_EQ(points[0].pos[0], 0.02);
+  EXPECT_EQ(points[1].normal[0], 1.0);
+  EXPECT_EQ(points[1].pos[1], 0.02);
+}
+
 TEST(ContactPoints, StiffnessIsSharedAmongThoseThatPushTheSameWay) {
   const double diagonal = std::numbers::sqrt2 / 2.0;
   const std::vector<dContactGeom> points = {

@@ -76,6 +76,21 @@ void thin_out(std::vector<dContactGeom>& points) {
   points.resize(kept.size());
 }
 
+void keep_deepest(std::vector<dContactGeom>& points) {
+  std::size_t kept = 0;
+  for (const dContactGeom& point : points) {
+    const auto end = points.begin() + static_cast<std::ptrdiff_t>(kept);
+    const auto same = std::find_if(
+        points.begin(), end, [&](const dContactGeom& other) { return on_one_plane(other, point); });
+    if (same == end) {
+      points[kept++] = point;
+    } else if (point.depth > same->depth) {
+      *same = point;
+    }
+  }
+  points.resize(kept);
+}
+
 std::vector<double> shares(const std::vector<dContactGeom>& points) {
   const auto depth_m = [](const dContactGeom& point) {
     return std::max(kGrazing_m, static_cast<double>(point.depth));

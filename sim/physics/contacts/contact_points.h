@@ -16,6 +16,10 @@ inline constexpr std::size_t kPointsAFace = 9;
 /// The order stays as it was. Points on a face with no more than kPointsAFace are all kept.
 void thin_out(std::vector<dContactGeom>& points);
 
+/// For a part that cannot rotate, one point stands for a face: of points on one plane only the
+/// deepest stays. Its force is that of the face, and a solver has a fraction of the work.
+void keep_deepest(std::vector<dContactGeom>& points);
+
 /// For every point, the part of its face's stiffness that it gets: in proportion to its depth, and
 /// as if it were alone on the face where the others only graze. So the force of a tilted face does
 /// not jump when another of its corners comes into reach, and does not depend on how many points

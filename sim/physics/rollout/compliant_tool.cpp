@@ -3,6 +3,9 @@
 namespace tenon::sim {
 namespace {
 
+// No contact turns a body of this inertia by anything that a double can hold.
+constexpr double kLockedInertia_kgm2 = 1e12;
+
 // ODE numbers the parameters of a motor's second and third axis by group.
 int of_axis(int parameter, int axis) { return parameter + dParamGroup * axis; }
 
@@ -16,15 +19,13 @@ AxisDrive soft(double error, double speed, double stiffness, double damping, dou
   return {(stiffness * error + damping * speed) / impedance, 1.0 / impedance};
 }
 
-AxisDrive rigid(double error, double speed, double step_s) {
-  constexpr double kCorrection = 0.5;  // of the error a step
-  return {speed + kCorrection * error / step_s, 1e-12};
-}
+AxisDrive rigid(double error, double step_s) { return {error / step_s, 1e-12}; }
 
 }  // namespace
 
 CompliantTool::CompliantTool(OdeWorld& world, const Compliance& compliance)
-    : body_(dBodyCreate(world.id())),
+    : tool_(compliance),
+      body_(dBodyCreate(world.id())),
       translation_(dJointCreateLMotor(world.id(), nullptr)),
       rotation_(dJointCreateAMotor(world.id(), nullptr)) {
   dBodySetGyroscopicMode(body_, 0);
@@ -49,29 +50,56 @@ CompliantTool::~CompliantTool() {
   dBodyDestroy(body_);
 }
 
-void CompliantTool::set_compliance(const Compliance& compliance) {
+void CompliantTool::set_compliance(const Compliance& compliance, bool turns) {
   compliance_ = compliance;
+  tool_ = Admittance(compliance);
+  turns_ = turns;
+  const double inertia_kgm2 = turns ? compliance.inertia_kgm2 : kLockedInertia_kgm2;
   dMass mass;
-  dMassSetParameters(&mass, compliance.mass_kg, 0.0, 0.0, 0.0, compliance.inertia_kgm2,
-                     compliance.inertia_kgm2, compliance.inertia_kgm2, 0.0, 0.0, 0.0);
+  dMassSetParameters(&mass, compliance.mass_kg, 0.0, 0.0, 0.0, inertia_kgm2, inertia_kgm2,
+                     inertia_kgm2, 0.0, 0.0, 0.0);
   dBodySetMass(body_, &mass);
+  (turns ? dJointEnable : dJointDisable)(rotation_);
 }
 
 void CompliantTool::place(const Pose& pose) {
-  set_pose(body_, pose);
-  dBodySetLinearVel(body_, 0.0, 0.0, 0.0);
-  dBodySetAngularVel(body_, 0.0, 0.0, 0.0);
+  tool_.reset({pose, Vector6::Zero()});
+  shown_ = false;
+  show();
+}
+
+void CompliantTool::fly(const GuardedMove::Setpoint& setpoint, double step_s) {
+  tool_.update(setpoint, Vector6::Zero(), step_s);
+  shown_ = false;
+}
+
+void CompliantTool::show() {
+  if (shown_) return;
+  shown_ = true;
+  const Vector6& v = tool_.state().velocity;
+  set_pose(body_, pose());
+  dBodySetLinearVel(body_, v[0], v[1], v[2]);
+  dBodySetAngularVel(body_, v[3], v[4], v[5]);
   dBodySetForce(body_, 0.0, 0.0, 0.0);
   dBodySetTorque(body_, 0.0, 0.0, 0.0);
 }
 
+void CompliantTool::follow() {
+  Admittance::State state{pose_of(body_), Vector6::Zero()};
+  if (!turns_) state.pose.orientation = pose().orientation;
+  const dReal* linear = dBodyGetLinearVel(body_);
+  const dReal* angular = dBodyGetAngularVel(body_);
+  state.velocity << linear[0], linear[1], linear[2], angular[0], angular[1], angular[2];
+  tool_.reset(state);
+}
+
 void CompliantTool::drive(const GuardedMove::Setpoint& setpoint, double step_s) {
   const Vector6 error = displacement_between(pose(), setpoint.pose);
-  for (int axis = 0; axis < 6; ++axis) {
+  for (int axis = 0; axis < (turns_ ? 6 : 3); ++axis) {
     const bool linear = axis < 3;
     const bool yields = (compliance_.compliant_axes >> axis & 1U) != 0;
     const AxisDrive drive =
-        !yields ? rigid(error[axis], setpoint.velocity[axis], step_s)
+        !yields ? rigid(error[axis], step_s)
                 : soft(error[axis], setpoint.velocity[axis],
                        linear ? compliance_.stiffness_Npm : compliance_.stiffness_Nmpr,
                        linear ? compliance_.damping_Nspm : compliance_.damping_Nmspr, step_s);
@@ -81,8 +109,9 @@ void CompliantTool::drive(const GuardedMove::Setpoint& setpoint, double step_s) 
     set(motor, of_axis(dParamCFM, axis % 3), drive.softness);
   }
   const Vector3 force = compliance_.mass_kg * setpoint.acceleration.head<3>();
-  const Vector3 torque = compliance_.inertia_kgm2 * setpoint.acceleration.tail<3>();
   dBodyAddForce(body_, force.x(), force.y(), force.z());
+  if (!turns_) return;
+  const Vector3 torque = compliance_.inertia_kgm2 * setpoint.acceleration.tail<3>();
   dBodyAddTorque(body_, torque.x(), torque.y(), torque.z());
 }
 

@@ -17,6 +17,13 @@ constexpr double kCollision_m = 1e-4;
 constexpr std::int64_t kMicrosecond_ns = 1000;
 constexpr double kMicrosecond_s = 1e-6;
 
+/// Whether the moves that these parameters tell of can rotate the tool.
+bool turns(const MoveParameters& move) {
+  constexpr unsigned kRotations = 0b111000;
+  return (move.compliance.compliant_axes & kRotations) != 0 ||
+         !move.displacement.tail<3>().isZero(0.0);
+}
+
 }  // namespace
 
 struct OdeRollout::Physics {
@@ -24,9 +31,51 @@ struct OdeRollout::Physics {
       : scene(task.held, task.environment), tool(world, task.compliance) {
     scene.attach(tool.body());
   }
+
+  void begin(const Particle& particle, const MoveParameters& move) {
+    turning = turns(move);
+    law = {particle.physics.friction, particle.physics.contact_stiffness_Npm};
+    tool.set_compliance(move.compliance, turning);
+    tool.place(particle.pose);
+    scene.set_oversize(particle.physics.oversize_m);
+    scene.clear_contacts();
+    wrench.setZero();
+    free_m = 0.0;
+  }
+
+  /// One step of the plant: in free flight where nothing is within reach or touches, else through
+  /// the solver. @return deepest overlap before the step
+  double step(const GuardedMove::Setpoint& setpoint, double step_s) {
+    if (free_m <= 0.0) {
+      tool.show();
+      const Scene::Contacts contacts = scene.find_contacts(turning);
+      if (contacts.points > 0) {
+        scene.make_joints(world, step_s, law);
+        tool.drive(setpoint, step_s);
+        world.step(step_s);
+        tool.follow();
+        wrench = scene.wrench();
+        return contacts.depth_max_m;
+      }
+      wrench.setZero();
+      free_m = scene.clearance_m();
+    }
+    const Pose before = tool.pose();
+    tool.fly(setpoint, step_s);
+    free_m -= (tool.pose().position_m - before.position_m).norm();
+    if (turning) {
+      free_m -= scene.reach_m() * before.orientation.angularDistance(tool.pose().orientation);
+    }
+    return 0.0;
+  }
+
   OdeWorld world;
   Scene scene;
   CompliantTool tool;
+  ContactLaw law;
+  bool turning = true;
+  Vector6 wrench = Vector6::Zero();
+  double free_m = 0.0;  ///< the tool can move this far before it may touch anything
 };
 
 OdeRollout::OdeRollout(const Task& task) : task_(task), physics_(std::make_unique<Physics>(task)) {}
@@ -37,11 +86,8 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
                                    std::int64_t step_us, std::vector<TraceSample>* trace) {
   Physics& p = *physics_;
   const double step_s = kMicrosecond_s * static_cast<double>(step_us);
-  const ContactLaw law{particle.physics.friction, particle.physics.contact_stiffness_Npm};
   const std::uint64_t messages_before = ode_messages();
-  p.tool.set_compliance(move.compliance);
-  p.tool.place(particle.pose);
-  p.scene.set_oversize(particle.physics.oversize_m);
+  p.begin(particle, move);
 
   GuardedMove guarded(move, particle.signature);
   GuardedMove::Input input;
@@ -53,16 +99,13 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
     if (trace != nullptr) trace->push_back({input, output.setpoint});
     if (output.phase == GuardedMove::Phase::kDone) break;
 
-    p.tool.drive(output.setpoint, step_s);
-    const Scene::Contacts contacts = p.scene.collide(p.world, step_s, law);
-    p.world.step(step_s);
-    if (contacts.depth_max_m > kTunnelled_m) {
+    if (p.step(output.setpoint, step_s) > kTunnelled_m) {
       result.failure = "a part has gone through another";
       return result;
     }
     input.time_ns += step_us * kMicrosecond_ns;
     input.pose = p.tool.pose();
-    input.wrench = p.scene.wrench();
+    input.wrench = p.wrench;
     input.wrench_fresh = true;
   }
   if (ode_messages() != messages_before) {

@@ -1,7 +1,9 @@
 #include "sim/physics/surfaces/shape_geometry.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 
 namespace tenon::sim {
 namespace {
@@ -42,6 +44,7 @@ void ShapeGeometry::attach(dBodyID body, const Pose& X_BP) {
 }
 
 void ShapeGeometry::set_oversize(double oversize_m) {
+  oversize_m_ = oversize_m;
   const Vector3 size_m = shape_.size_m + Vector3::Constant(oversize_m);
   switch (shape_.kind) {
     case Shape::Kind::kBox:
@@ -51,6 +54,19 @@ void ShapeGeometry::set_oversize(double oversize_m) {
   }
 }
 
+double ShapeGeometry::gap_m(const ShapeGeometry& other) const {
+  std::array<dReal, 6> a{};
+  std::array<dReal, 6> b{};
+  dGeomGetAABB(geometry_, a.data());
+  dGeomGetAABB(other.geometry_, b.data());
+  double squares_m2 = 0.0;
+  for (std::size_t i = 0; i < a.size(); i += 2) {
+    const double apart_m = std::max({0.0, b[i] - a[i + 1], a[i] - b[i + 1]});
+    squares_m2 += apart_m * apart_m;
+  }
+  return std::sqrt(squares_m2);
+}
+
 bool ShapeGeometry::is_near(const ShapeGeometry& other) const {
   std::array<dReal, 6> a{};
   std::array<dReal, 6> b{};
@@ -58,6 +74,12 @@ bool ShapeGeometry::is_near(const ShapeGeometry& other) const {
   dGeomGetAABB(other.geometry_, b.data());
   return a[0] <= b[1] && b[0] <= a[1] && a[2] <= b[3] && b[2] <= a[3] && a[4] <= b[5] &&
          b[4] <= a[5];
+}
+
+double ShapeGeometry::reach_m() const {
+  const dReal* centre = dGeomGetOffsetPosition(geometry_);
+  const double size_m = (shape_.size_m + Vector3::Constant(oversize_m_)).norm();
+  return Vector3(centre[0], centre[1], centre[2]).norm() + 0.5 * size_m;
 }
 
 }  // namespace tenon::sim

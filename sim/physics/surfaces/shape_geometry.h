@@ -29,11 +29,17 @@ class ShapeGeometry {
   /// Every size as drawn and this much more.
   void set_oversize(double oversize_m);
 
-  /// The boxes around the two, along the world's axes, overlap or touch.
+  /// How far the boxes around the two, along the world's axes, are apart: the shapes are at least
+  /// as far. 0 where they overlap or touch.
+  [[nodiscard]] double gap_m(const ShapeGeometry& other) const;
+  /// The boxes overlap or touch.
   [[nodiscard]] bool is_near(const ShapeGeometry& other) const;
+  /// No point of an attached shape is farther than this from the body's origin.
+  [[nodiscard]] double reach_m() const;
 
  private:
   Shape shape_;
+  double oversize_m_ = 0.0;
   dGeomID geometry_;
 };
 
