@@ -43,6 +43,8 @@ class Scene {
   Contacts find_contacts(bool turns);
   /// Makes the joints of the contacts that were found. Call before OdeWorld::step().
   void make_joints(OdeWorld& world, double step_s, const ContactLaw& law);
+  /// The contact points that were found.
+  [[nodiscard]] const std::vector<dContactGeom>& points() const { return points_; }
   /// There are no contacts: what find_contacts() would find where all shapes are apart.
   void clear_contacts();
 

@@ -68,9 +68,22 @@ void CompliantTool::place(const Pose& pose) {
   show();
 }
 
-void CompliantTool::fly(const GuardedMove::Setpoint& setpoint, double step_s) {
-  tool_.update(setpoint, Vector6::Zero(), step_s);
+void CompliantTool::fly(const GuardedMove::Setpoint& setpoint, double step_s,
+                        const Vector6& wrench) {
+  tool_.update(setpoint, wrench, step_s);
   shown_ = false;
+}
+
+Vector3 CompliantTool::free_velocity_mps(const GuardedMove::Setpoint& setpoint,
+                                         double step_s) const {
+  Admittance tool = tool_;
+  return tool.update(setpoint, Vector6::Zero(), step_s).velocity.head<3>();
+}
+
+Vector3 CompliantTool::give_mpspN(double step_s) const {
+  const double give = 1.0 / (compliance_.mass_kg / step_s + compliance_.damping_Nspm +
+                             compliance_.stiffness_Npm * step_s);
+  return {tool_.yields(0) ? give : 0.0, tool_.yields(1) ? give : 0.0, tool_.yields(2) ? give : 0.0};
 }
 
 void CompliantTool::show() {

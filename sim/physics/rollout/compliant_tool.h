@@ -14,9 +14,9 @@ namespace tenon::sim {
 
 /// M (x'' - xs'') + D (x' - xs') + K (x - xs) = f for a body whose origin is the tool tip, in two
 /// ways that agree. Among contacts the spring and the damper are velocity constraints with the
-/// right softness, which dWorldStep integrates implicitly: stable for any stiffness and step. In
-/// free flight the same implicit step has a closed form, the Admittance, at a tenth of the time.
-/// Axes that do not yield follow the setpoint.
+/// right softness, which dWorldStep integrates implicitly: stable for any stiffness and step. Where
+/// the force is known beforehand, in free flight above all, the same implicit step has a closed
+/// form, the Admittance, at a tenth of the time. Axes that do not yield follow the setpoint.
 class CompliantTool {
  public:
   CompliantTool(OdeWorld& world, const Compliance& compliance);
@@ -33,8 +33,15 @@ class CompliantTool {
   [[nodiscard]] const Pose& pose() const { return tool_.state().pose; }
   [[nodiscard]] dBodyID body() const { return body_; }
 
-  /// One step of a tool that nothing touches. The body stays behind until it is needed.
-  void fly(const GuardedMove::Setpoint& setpoint, double step_s);
+  /// One step under a known force (world axes, about the body's origin). The body stays behind
+  /// until it is needed.
+  void fly(const GuardedMove::Setpoint& setpoint, double step_s,
+           const Vector6& wrench = Vector6::Zero());
+  /// The translational velocity that fly() would leave the tool with, and by how much a force along
+  /// each axis would change it (m/s a N; 0 for an axis that does not yield).
+  [[nodiscard]] Vector3 free_velocity_mps(const GuardedMove::Setpoint& setpoint,
+                                          double step_s) const;
+  [[nodiscard]] Vector3 give_mpspN(double step_s) const;
   /// Brings the body to where the tool is, for collisions.
   void show();
   /// Sets the drive for the coming step of a shown body. Call before OdeWorld::step().

@@ -6,6 +6,7 @@
 #include "sim/physics/rollout/compliant_tool.h"
 #include "sim/physics/scene.h"
 #include "sim/physics/solver/ode_world.h"
+#include "sim/physics/solver/one_contact.h"
 
 namespace tenon::sim {
 namespace {
@@ -43,30 +44,51 @@ struct OdeRollout::Physics {
     free_m = 0.0;
   }
 
-  /// One step of the plant: in free flight where nothing is within reach or touches, else through
-  /// the solver. @return deepest overlap before the step
+  /// One step of the plant: in closed form where nothing touches, or where a single face does and
+  /// nothing can rotate; else through the solver. @return deepest overlap before the step
   double step(const GuardedMove::Setpoint& setpoint, double step_s) {
-    if (free_m <= 0.0) {
-      tool.show();
-      const Scene::Contacts contacts = scene.find_contacts(turning);
-      if (contacts.points > 0) {
-        scene.make_joints(world, step_s, law);
-        tool.drive(setpoint, step_s);
-        world.step(step_s);
-        tool.follow();
-        wrench = scene.wrench();
-        return contacts.depth_max_m;
-      }
+    if (free_m > 0.0) {
+      fly(setpoint, step_s);
+      return 0.0;
+    }
+    tool.show();
+    const Scene::Contacts contacts = scene.find_contacts(turning);
+    if (contacts.points == 0) {
       wrench.setZero();
       free_m = scene.clearance_m();
+      fly(setpoint, step_s);
+    } else if (contacts.points > 1 || turning || !slide(setpoint, step_s)) {
+      solve(setpoint, step_s);
     }
+    return contacts.depth_max_m;
+  }
+
+  void fly(const GuardedMove::Setpoint& setpoint, double step_s) {
     const Pose before = tool.pose();
     tool.fly(setpoint, step_s);
     free_m -= (tool.pose().position_m - before.position_m).norm();
-    if (turning) {
-      free_m -= scene.reach_m() * before.orientation.angularDistance(tool.pose().orientation);
-    }
-    return 0.0;
+    if (!turning) return;
+    free_m -= scene.reach_m() * before.orientation.angularDistance(tool.pose().orientation);
+  }
+
+  /// With one contact point. @return false where it takes the solver
+  bool slide(const GuardedMove::Setpoint& setpoint, double step_s) {
+    const dContactGeom& point = scene.points().front();
+    const auto force = one_contact_force(point, law, tool.free_velocity_mps(setpoint, step_s),
+                                         tool.give_mpspN(step_s), step_s);
+    if (!force) return false;
+    const Vector3 at = Vector3(point.pos[0], point.pos[1], point.pos[2]) - tool.pose().position_m;
+    wrench << *force, at.cross(*force);
+    tool.fly(setpoint, step_s, wrench);
+    return true;
+  }
+
+  void solve(const GuardedMove::Setpoint& setpoint, double step_s) {
+    scene.make_joints(world, step_s, law);
+    tool.drive(setpoint, step_s);
+    world.step(step_s);
+    tool.follow();
+    wrench = scene.wrench();
   }
 
   OdeWorld world;

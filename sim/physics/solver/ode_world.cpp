@@ -2,6 +2,8 @@
 
 #include <cstdarg>
 
+#include "sim/physics/solver/contact_row.h"
+
 namespace tenon::sim {
 namespace {
 
@@ -36,7 +38,7 @@ OdeWorld::OdeWorld() {
                                        threading_);
   dWorldSetGravity(world_, 0.0, 0.0, 0.0);
   dWorldSetERP(world_, 0.2);
-  dWorldSetCFM(world_, 1e-9);
+  dWorldSetCFM(world_, kFrictionSoftness);
   dWorldSetAutoDisableFlag(world_, 0);
   contacts_ = dJointGroupCreate(0);
 }
