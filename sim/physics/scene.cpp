@@ -5,6 +5,7 @@
 #include <span>
 
 #include "sim/physics/contacts/contact_points.h"
+#include "sim/physics/contacts/prism_contact.h"
 #include "sim/physics/contacts/touching_points.h"
 
 namespace tenon::sim {
@@ -24,6 +25,9 @@ Scene::Scene(const std::vector<Shape>& held, const std::vector<Shape>& environme
              const Pose& X_WT) {
   for (const Shape& shape : held) held_.emplace_back(shape);
   for (const Shape& shape : environment) environment_.emplace_back(shape).place(X_WT);
+  for (std::size_t h = 0; h < held.size(); ++h) {
+    for (std::size_t e = 0; e < environment.size(); ++e) watched_.push_back({{h, e}, 0.0});
+  }
 }
 
 void Scene::attach(dBodyID body, const Pose& X_BP) {
@@ -34,19 +38,23 @@ void Scene::set_oversize(double oversize_m) {
   if (oversize_m == oversize_m_) return;
   oversize_m_ = oversize_m;
   for (ShapeGeometry& shape : held_) shape.set_oversize(oversize_m);
+  moved_anywhere();
 }
 
 Scene::Contacts Scene::find_contacts(bool turns) {
   points_.clear();
   touching_.clear();
+  clear_until_m_ = std::numeric_limits<double>::infinity();
   PairPoints buffer;
-  for (std::size_t h = 0; h < held_.size(); ++h) {
-    for (std::size_t e = 0; e < environment_.size(); ++e) {
-      const auto found = touching_points(held_[h], environment_[e], buffer);
-      if (found.empty()) continue;
-      touching_.push_back({h, e});
-      points_.insert(points_.end(), found.begin(), found.end());
+  for (Watched& watched : watched_) {
+    if (watched.apart_until_m <= moved_m_) {
+      const ShapeGeometry& held = held_[watched.pair.held];
+      const ShapeGeometry& environment = environment_[watched.pair.environment];
+      const double apart_m = held.separation_m(environment);
+      watched.apart_until_m = moved_m_ + std::max(0.0, apart_m);
+      if (apart_m <= 0.0) touch(watched, turns, buffer);
     }
+    clear_until_m_ = std::min(clear_until_m_, watched.apart_until_m);
   }
   Contacts result;
   result.depth_max_m = deepest_m(points_);
@@ -55,23 +63,31 @@ Scene::Contacts Scene::find_contacts(bool turns) {
   return result;
 }
 
-void Scene::make_joints(OdeWorld& world, double step_s, const ContactLaw& law) {
-  joints_.make(world, points_, law, step_s);
-}
-
-void Scene::clear_contacts() {
+void Scene::moved_anywhere() {
+  for (Watched& watched : watched_) watched.apart_until_m = 0.0;
+  moved_m_ = 0.0;
+  clear_until_m_ = 0.0;
   points_.clear();
   touching_.clear();
 }
 
-double Scene::clearance_m() const {
-  double nearest_m = std::numeric_limits<double>::infinity();
-  for (const ShapeGeometry& held : held_) {
-    for (const ShapeGeometry& environment : environment_) {
-      nearest_m = std::min(nearest_m, held.gap_m(environment));
-    }
+void Scene::touch(Watched& watched, bool turns, PairPoints& buffer) {
+  const ShapeGeometry& held = held_[watched.pair.held];
+  const ShapeGeometry& environment = environment_[watched.pair.environment];
+  std::span<const dContactGeom> found;
+  if (const auto one = turns ? std::nullopt : prism_contact(held, environment)) {
+    watched.apart_until_m = moved_m_ + std::max(0.0, -static_cast<double>(one->depth));
+    buffer.front() = *one;
+    found = {buffer.data(), one->depth >= 0.0 ? 1U : 0U};
+  } else {
+    found = touching_points(held, environment, buffer);
   }
-  return nearest_m;
+  if (!found.empty()) touching_.push_back(watched.pair);
+  points_.insert(points_.end(), found.begin(), found.end());
+}
+
+void Scene::make_joints(OdeWorld& world, double step_s, const ContactLaw& law) {
+  joints_.make(world, points_, law, step_s);
 }
 
 double Scene::reach_m() const {
@@ -85,6 +101,7 @@ double Scene::overlap_m() const {
   PairPoints buffer;
   for (const ShapeGeometry& held : held_) {
     for (const ShapeGeometry& environment : environment_) {
+      if (held.separation_m(environment) > 0.0) continue;
       overlap_m = std::max(overlap_m, deepest_m(touching_points(held, environment, buffer)));
     }
   }

@@ -13,6 +13,7 @@
 #include "shared/math/pose.h"
 #include "shared/task/task.h"
 #include "sim/physics/contacts/contact_law.h"
+#include "sim/physics/contacts/touching_points.h"
 #include "sim/physics/solver/contact_joints.h"
 #include "sim/physics/solver/ode_world.h"
 #include "sim/physics/surfaces/shape_geometry.h"
@@ -39,18 +40,21 @@ class Scene {
     std::size_t points = 0;
     double depth_max_m = 0.0;
   };
-  /// Finds where the shapes touch. @param turns whether the held part can rotate
+  /// Finds where the shapes touch, looking only at those that may have come near since they were
+  /// last seen apart. @param turns whether the held part can rotate
   Contacts find_contacts(bool turns);
   /// Makes the joints of the contacts that were found. Call before OdeWorld::step().
   void make_joints(OdeWorld& world, double step_s, const ContactLaw& law);
   /// The contact points that were found.
   [[nodiscard]] const std::vector<dContactGeom>& points() const { return points_; }
-  /// There are no contacts: what find_contacts() would find where all shapes are apart.
-  void clear_contacts();
 
-  /// A distance that the held part may move in any way without touching anything, m; may be 0 where
-  /// nothing touches.
-  [[nodiscard]] double clearance_m() const;
+  /// A distance that the held part may still move, in any way, before any two shapes can touch, m.
+  /// 0 where that has to be looked at.
+  [[nodiscard]] double clearance_m() const { return clear_until_m_ - moved_m_; }
+  /// No point of the held part has moved farther than this since it was last told.
+  void moved(double at_most_m) { moved_m_ += at_most_m; }
+  /// It may be anywhere now, and touches nothing that is known of.
+  void moved_anywhere();
   /// No point of the held part is farther than this from its body's origin.
   [[nodiscard]] double reach_m() const;
 
@@ -76,6 +80,16 @@ class Scene {
  private:
   std::deque<ShapeGeometry> held_;
   std::deque<ShapeGeometry> environment_;
+  struct Watched {
+    Pair pair;
+    double apart_until_m = 0.0;  ///< on the way that the held part has moved
+  };
+  /// Adds the points of two shapes that are near.
+  void touch(Watched& watched, bool turns, PairPoints& buffer);
+
+  std::vector<Watched> watched_;  // all pairs
+  double moved_m_ = 0.0;
+  double clear_until_m_ = 0.0;
   double oversize_m_ = 0.0;
   std::vector<dContactGeom> points_;  // of the last contacts, thinned out
   ContactJoints joints_;

@@ -86,18 +86,27 @@ const std::vector<Shape> kStick = {
 TEST(FreeFlight, ClearanceIsNeverMoreThanTheWayToTheNextShape) {
   OdeWorld world;
   CompliantTool tool(world, {});
-  Scene scene(kStick,
-              {{"wall", Shape::Kind::kBox, {0.02, 1.0, 1.0}, {{0.1, 0.0, 0.0}, {1, 0, 0, 0}}}});
+  const Vector3 centre_m(0.1, 0.0, 0.0);
+  Scene scene(kStick, {{"wall", Shape::Kind::kBox, {0.02, 1.0, 1.0}, {centre_m, {1, 0, 0, 0}}}});
   scene.attach(tool.body());
-  tool.place({});
-  EXPECT_NEAR(scene.clearance_m(), 0.085, 1e-12);
+  const auto clearance_m = [&](const Pose& pose) {
+    tool.place(pose);
+    scene.moved_anywhere();
+    EXPECT_EQ(scene.clearance_m(), 0.0);
+    (void)scene.find_contacts(/*turns=*/true);
+    return scene.clearance_m();
+  };
+  EXPECT_NEAR(clearance_m({}), 0.085, 1e-12);
+  scene.moved(0.08);
+  EXPECT_NEAR(scene.clearance_m(), 0.005, 1e-12);
   scene.set_oversize(0.004);
-  EXPECT_NEAR(scene.clearance_m(), 0.083, 1e-12);
-  tool.place({Vector3::Zero(), rotation_of({0.0, 0.3, 0.0})});
-  EXPECT_LE(scene.clearance_m(), 0.09 - 0.2 * std::sin(0.3));
+  EXPECT_NEAR(clearance_m({}), 0.083, 1e-12);
+  const double tilted_m = clearance_m({Vector3::Zero(), rotation_of({0.0, 0.3, 0.0})});
+  EXPECT_LE(tilted_m, 0.09 - 0.2 * std::sin(0.3));
+  EXPECT_GT(tilted_m, 0.02);
   EXPECT_GE(scene.reach_m(), 0.2);
-  tool.place({{0.09, 0.0, 0.0}, Eigen::Quaterniond::Identity()});
-  EXPECT_EQ(scene.clearance_m(), 0.0);
+  EXPECT_EQ(clearance_m({{0.09, 0.0, 0.0}, Eigen::Quaterniond::Identity()}), 0.0);
+  EXPECT_EQ(scene.touching(), std::vector<std::string>{"stick-wall"});
 }
 
 TEST(FreeFlight, AStickThatTurnsIntoAWallMeetsIt) {

@@ -5,8 +5,8 @@
 #include "sim/physics/contacts/contact_law.h"
 #include "sim/physics/rollout/compliant_tool.h"
 #include "sim/physics/scene.h"
+#include "sim/physics/solver/locked_contacts.h"
 #include "sim/physics/solver/ode_world.h"
-#include "sim/physics/solver/one_contact.h"
 
 namespace tenon::sim {
 namespace {
@@ -39,15 +39,14 @@ struct OdeRollout::Physics {
     tool.set_compliance(move.compliance, turning);
     tool.place(particle.pose);
     scene.set_oversize(particle.physics.oversize_m);
-    scene.clear_contacts();
+    scene.moved_anywhere();
     wrench.setZero();
-    free_m = 0.0;
   }
 
-  /// One step of the plant: in closed form where nothing touches, or where a single face does and
-  /// nothing can rotate; else through the solver. @return deepest overlap before the step
+  /// One step of the plant. @return deepest overlap before it
   double step(const GuardedMove::Setpoint& setpoint, double step_s) {
-    if (free_m > 0.0) {
+    if (scene.clearance_m() > 0.0) {
+      wrench.setZero();
       fly(setpoint, step_s);
       return 0.0;
     }
@@ -55,49 +54,56 @@ struct OdeRollout::Physics {
     const Scene::Contacts contacts = scene.find_contacts(turning);
     if (contacts.points == 0) {
       wrench.setZero();
-      free_m = scene.clearance_m();
       fly(setpoint, step_s);
-    } else if (contacts.points > 1 || turning || !slide(setpoint, step_s)) {
+    } else if (turning || !slide(setpoint, step_s)) {
       solve(setpoint, step_s);
     }
     return contacts.depth_max_m;
   }
 
+  /// Under the wrench as it stands.
   void fly(const GuardedMove::Setpoint& setpoint, double step_s) {
     const Pose before = tool.pose();
-    tool.fly(setpoint, step_s);
-    free_m -= (tool.pose().position_m - before.position_m).norm();
-    if (!turning) return;
-    free_m -= scene.reach_m() * before.orientation.angularDistance(tool.pose().orientation);
+    tool.fly(setpoint, step_s, wrench);
+    moved_from(before);
   }
 
-  /// With one contact point. @return false where it takes the solver
+  /// @return false where the contacts need the solver, turning or not
   bool slide(const GuardedMove::Setpoint& setpoint, double step_s) {
-    const dContactGeom& point = scene.points().front();
-    const auto force = one_contact_force(point, law, tool.free_velocity_mps(setpoint, step_s),
-                                         tool.give_mpspN(step_s), step_s);
-    if (!force) return false;
-    const Vector3 at = Vector3(point.pos[0], point.pos[1], point.pos[2]) - tool.pose().position_m;
-    wrench << *force, at.cross(*force);
-    tool.fly(setpoint, step_s, wrench);
+    if (!locked.solve(scene.points(), law, tool.free_velocity_mps(setpoint, step_s),
+                      tool.give_mpspN(step_s), step_s)) {
+      return false;
+    }
+    wrench = locked.wrench_about(tool.pose().position_m);
+    fly(setpoint, step_s);
     return true;
   }
 
   void solve(const GuardedMove::Setpoint& setpoint, double step_s) {
+    const Pose before = tool.pose();
     scene.make_joints(world, step_s, law);
     tool.drive(setpoint, step_s);
     world.step(step_s);
     tool.follow();
     wrench = scene.wrench();
+    moved_from(before);
+  }
+
+  void moved_from(const Pose& before) {
+    double most_m = (tool.pose().position_m - before.position_m).norm();
+    if (turning) {
+      most_m += scene.reach_m() * before.orientation.angularDistance(tool.pose().orientation);
+    }
+    scene.moved(most_m);
   }
 
   OdeWorld world;
   Scene scene;
   CompliantTool tool;
+  LockedContacts locked;
   ContactLaw law;
   bool turning = true;
   Vector6 wrench = Vector6::Zero();
-  double free_m = 0.0;  ///< the tool can move this far before it may touch anything
 };
 
 OdeRollout::OdeRollout(const Task& task) : task_(task), physics_(std::make_unique<Physics>(task)) {}

@@ -1,9 +1,9 @@
 #include "sim/physics/surfaces/shape_geometry.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace tenon::sim {
 namespace {
@@ -17,6 +17,11 @@ dGeomID make_geometry(const Shape& shape) {
   }
   assert(false);
   return nullptr;
+}
+
+/// One of a geometry's own axes, in the world's. ODE's matrices have rows of four.
+Vector3 axis_of(const dReal* rotation, int axis) {
+  return {rotation[axis], rotation[4 + axis], rotation[8 + axis]};
 }
 
 }  // namespace
@@ -54,26 +59,66 @@ void ShapeGeometry::set_oversize(double oversize_m) {
   }
 }
 
-double ShapeGeometry::gap_m(const ShapeGeometry& other) const {
-  std::array<dReal, 6> a{};
-  std::array<dReal, 6> b{};
-  dGeomGetAABB(geometry_, a.data());
-  dGeomGetAABB(other.geometry_, b.data());
-  double squares_m2 = 0.0;
-  for (std::size_t i = 0; i < a.size(); i += 2) {
-    const double apart_m = std::max({0.0, b[i] - a[i + 1], a[i] - b[i + 1]});
-    squares_m2 += apart_m * apart_m;
+double ShapeGeometry::half_extent_m(const Vector3& way) const {
+  const Vector3 half_m = 0.5 * (shape_.size_m + Vector3::Constant(oversize_m_));
+  const dReal* rotation = dGeomGetRotation(geometry_);
+  const Vector3 along(axis_of(rotation, 0).dot(way), axis_of(rotation, 1).dot(way),
+                      axis_of(rotation, 2).dot(way));
+  switch (shape_.kind) {
+    case Shape::Kind::kBox:
+      return half_m.dot(along.cwiseAbs());
+    case Shape::Kind::kCylinder:
+      return half_m.x() * along.head<2>().norm() + half_m.z() * std::abs(along.z());
   }
-  return std::sqrt(squares_m2);
+  return 0.0;
 }
 
-bool ShapeGeometry::is_near(const ShapeGeometry& other) const {
-  std::array<dReal, 6> a{};
-  std::array<dReal, 6> b{};
-  dGeomGetAABB(geometry_, a.data());
-  dGeomGetAABB(other.geometry_, b.data());
-  return a[0] <= b[1] && b[0] <= a[1] && a[2] <= b[3] && b[2] <= a[3] && a[4] <= b[5] &&
-         b[4] <= a[5];
+double ShapeGeometry::separation_m(const ShapeGeometry& other) const {
+  const dReal* a = dGeomGetPosition(geometry_);
+  const dReal* b = dGeomGetPosition(other.geometry_);
+  const Vector3 between_m(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+  double apart_m = -std::numeric_limits<double>::infinity();
+  for (const ShapeGeometry* shape : {this, &other}) {
+    const dReal* rotation = dGeomGetRotation(shape->geometry_);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3 way = axis_of(rotation, axis);
+      apart_m = std::max(
+          apart_m, std::abs(way.dot(between_m)) - half_extent_m(way) - other.half_extent_m(way));
+    }
+  }
+  return apart_m;
+}
+
+std::optional<ShapeGeometry::AxesInCommon> ShapeGeometry::axes_in_common(
+    const ShapeGeometry& other) const {
+  constexpr double kParallel = 1.0 - 1e-12;  // 1.4 urad
+  const auto first = [](const ShapeGeometry& shape) {
+    return shape.shape_.kind == Shape::Kind::kCylinder ? 2 : 0;
+  };
+  for (int own = first(*this); own < 3; ++own) {
+    for (int its = first(other); its < 3; ++its) {
+      const double cosine = axis_of(dGeomGetRotation(geometry_), own)
+                                .dot(axis_of(dGeomGetRotation(other.geometry_), its));
+      if (std::abs(cosine) > kParallel) return AxesInCommon{own, its};
+    }
+  }
+  return std::nullopt;
+}
+
+Prism ShapeGeometry::prism(int axis) const {
+  const Vector3 half_m = 0.5 * (shape_.size_m + Vector3::Constant(oversize_m_));
+  const dReal* centre = dGeomGetPosition(geometry_);
+  const dReal* rotation = dGeomGetRotation(geometry_);
+  const int u = (axis + 1) % 3;
+  const int v = (axis + 2) % 3;
+  return {.centre_m = {centre[0], centre[1], centre[2]},
+          .axis = axis_of(rotation, axis),
+          .half_length_m = half_m[axis],
+          .u = axis_of(rotation, u),
+          .v = axis_of(rotation, v),
+          .half_u_m = half_m[u],
+          .half_v_m = half_m[v],
+          .round = shape_.kind == Shape::Kind::kCylinder};
 }
 
 double ShapeGeometry::reach_m() const {

@@ -4,10 +4,12 @@
 
 #include <ode/ode.h>
 
+#include <optional>
 #include <string>
 
 #include "shared/math/pose.h"
 #include "shared/task/task.h"
+#include "sim/physics/surfaces/prism.h"
 
 namespace tenon::sim {
 
@@ -29,15 +31,26 @@ class ShapeGeometry {
   /// Every size as drawn and this much more.
   void set_oversize(double oversize_m);
 
-  /// How far the boxes around the two, along the world's axes, are apart: the shapes are at least
-  /// as far. 0 where they overlap or touch.
-  [[nodiscard]] double gap_m(const ShapeGeometry& other) const;
-  /// The boxes overlap or touch.
-  [[nodiscard]] bool is_near(const ShapeGeometry& other) const;
+  /// The largest gap between the two along the axes of either, m: they are at least this far apart.
+  /// 0 or less tells nothing.
+  [[nodiscard]] double separation_m(const ShapeGeometry& other) const;
+  /// Which of its axes (0 to 2) the shape is a prism along, and which of another one's is parallel.
+  struct AxesInCommon {
+    int own = 0;
+    int other = 0;
+  };
+  /// Empty where the two stand askew.
+  [[nodiscard]] std::optional<AxesInCommon> axes_in_common(const ShapeGeometry& other) const;
+  /// As it stands. @param axis one that it is a prism along
+  [[nodiscard]] Prism prism(int axis) const;
+
   /// No point of an attached shape is farther than this from the body's origin.
   [[nodiscard]] double reach_m() const;
 
  private:
+  /// Half of what the shape measures along a direction of the world, a unit vector.
+  [[nodiscard]] double half_extent_m(const Vector3& way) const;
+
   Shape shape_;
   double oversize_m_ = 0.0;
   dGeomID geometry_;
