@@ -17,6 +17,7 @@
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
 #include "shared/config/load.h"
+#include "shared/system/fan_out.h"
 #include "sim/physics/rollout/ode_rollout.h"
 
 namespace {
@@ -32,7 +33,7 @@ struct Arguments {
   std::string report;
   std::string recertify;
   std::string cell;
-  std::size_t threads = 1;
+  std::size_t threads = all_cores();
 };
 
 void describe(CLI::App& app, Arguments& a) {
@@ -53,7 +54,7 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--cell", a.cell, "Cell file that the plan was made with");
   app.add_option("--threads", a.threads, "Threads of the simulation")
       ->check(CLI::Range(1, 256))
-      ->capture_default_str();
+      ->default_str("all cores");
 }
 
 std::vector<std::uint8_t> bytes_of(const std::string& file) {
@@ -88,16 +89,17 @@ struct Verdict {
   }
 };
 
-// The draws that the planner made, again. Their seed is always the same.
+// The draws that the planner made, again: their seed is in the plan.
 void validate_again(const Plan& plan, const Task& task, planner::RolloutPool& pool,
                     Verdict& verdict) {
-  planner::ValidationParameters parameters;
-  parameters.draws = plan.draws;
-  parameters.seed = planner::kEstimateSeed;
   const planner::Validation validation =
-      planner::validate(plan, task, planner::start_of(plan, task), parameters, pool);
+      planner::validate(plan, task, planner::start_of(plan, task), plan.draws, pool);
   verdict.add(validation.at_goal() == plan.draws_at_goal, "validated",
               planner::estimate_text(validation, task));
+  if (plan.method != PlanMethod::kMha) return;
+  const std::size_t arrived = planner::arrived(validation.corners);
+  verdict.add(arrived == validation.corners.size(), "validated",
+              planner::corners_text(validation, task));
 }
 
 Verdict recertify(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
@@ -150,13 +152,10 @@ Verdict recertify(const Arguments& a, const Plan& plan, const std::vector<std::u
 void write_report(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
   const Task task = task_of(plan, a.task, a.cell).task;
   planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
-  planner::ValidationParameters few;
-  few.draws = kReportDraws;
-  few.seed = planner::kEstimateSeed;
   write_file(a.report,
              planner::html_report(
                  plan, task, planner::certify(bytes, task, pool),
-                 planner::validate(plan, task, planner::start_of(plan, task), few, pool)));
+                 planner::validate(plan, task, planner::start_of(plan, task), kReportDraws, pool)));
 }
 
 int run(const Arguments& a) {

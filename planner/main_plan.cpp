@@ -17,6 +17,7 @@
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
 #include "shared/config/load.h"
+#include "shared/system/fan_out.h"
 #include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
 #include "sim/physics/rollout/ode_rollout.h"
@@ -32,7 +33,7 @@ struct Arguments {
   std::string method = to_string(PlanMethod::kMha);
   std::string output;
   std::string json;
-  std::size_t threads = 1;
+  std::size_t threads = all_cores();
   std::size_t draws = planner::kDrawsMin;
   std::optional<double> time_limit_s;
   bool verbose = false;
@@ -52,7 +53,7 @@ void describe(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_option("--threads", a.threads, "Threads; the plan does not depend on it")
       ->check(CLI::Range(1, 256))
-      ->capture_default_str();
+      ->default_str("all cores");
   app.add_option("--time-limit", a.time_limit_s,
                  "Seconds after which no path is searched for any more (the task's)");
   app.add_option("--draws", a.draws, "Random starts of the validation")

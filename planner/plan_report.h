@@ -44,7 +44,7 @@ struct PlanReport {
   std::vector<std::uint8_t> bytes;  ///< of the plan, as a file has them
 
   Certification certification;  ///< of the plan
-  Validation validation;        ///< by the draws of kEstimateSeed
+  Validation validation;        ///< of the plan, see validate()
 
   // What it took.
   SearchResult search;               ///< the last one

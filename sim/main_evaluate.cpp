@@ -144,7 +144,7 @@ int parse_and_evaluate(int argc, char** argv) {
       ->required();
   app.add_option("--threads", line.threads, "results do not depend on it")
       ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+      ->default_str("all cores");
   app.add_option("--by", line.by, "break success down by a drawn quantity: friction=0.1:0.8:7")
       ->expected(1, 2);
   app.add_option("--runs", line.runs, "run log to go on with; default: --json's name with .jsonl");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shared/cell/cell.h"
+#include "shared/system/fan_out.h"
 #include "shared/task/task.h"
 #include "sim/evaluation/evaluation.h"
 
@@ -21,7 +22,7 @@ struct EvaluateLine {
   std::string experiment;
   std::size_t count = 100;
   std::uint64_t seed = 0;
-  std::size_t threads = 1;
+  std::size_t threads = all_cores();
   std::string shard = "1/1";
   std::vector<std::string> merge;
   std::optional<std::size_t> only;

@@ -38,7 +38,9 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements) {
   slow.method = parameters_.method;
   Certification at_contact_speed = certified(slow);
   if (!at_contact_speed.holds()) return refutation_of(at_contact_speed);
-  if (slow.method != PlanMethod::kMha) return estimated(slow, std::move(at_contact_speed));
+  if (slow.method != PlanMethod::kMha) {
+    return estimated(slow, std::move(at_contact_speed), extremes_of(slow));
+  }
 
   std::vector<double> distances_m =
       slow_from(slow, chains_of(at_contact_speed), task_.particle_sigmas);
@@ -57,24 +59,31 @@ Judgement PathJudge::at_speeds(const Plan& plan, Certification certification,
     return refutation;
   };
   if (!certification.holds()) return refuted(refutation_of(certification));
-  const Validation validation = validated(plan, kSearchSeed);
-  if (auto miss = missed_draw(validation, task_.particle_sigmas)) return refuted(*miss);
-  if (shorten(plan, validation.good_chains(), distances_m)) {
-    return Refutation{{}, std::nullopt, "a draw met a contact before the tool was slow"};
+  const Extremes extremes = extremes_of(plan);
+  if (auto miss = missed_corner(extremes.corners, task_)) return refuted(*miss);
+  std::vector<Chain> good = good_chains(extremes.corners);
+  append(good, good_chains(extremes.rim));
+  std::vector<Draw> draws;
+  if (!shorten(plan, good, distances_m)) {
+    draws = drawn(plan, kSearchSeed);
+    if (auto miss = missed_draw(draws, task_.particle_sigmas)) return refuted(*miss);
+    append(good, good_chains(draws));
   }
-  std::vector<Chain> good = chains_of(certification);
-  append(good, validation.good_chains());
+  if (draws.empty() || shorten(plan, good, distances_m)) {
+    return Refutation{{}, std::nullopt, "a start met a contact before the tool was slow"};
+  }
+  append(good, chains_of(certification));
   std::variant<Plan, Refutation> judged = widened(plan, std::move(good));
   if (const auto* miss = std::get_if<Refutation>(&judged)) return refuted(*miss);
-  return estimated(std::get<Plan>(std::move(judged)), std::move(certification));
+  return estimated(std::get<Plan>(std::move(judged)), std::move(certification), extremes);
 }
 
 std::variant<Plan, Refutation> PathJudge::widened(const Plan& plan, std::vector<Chain> good) {
   Plan judged = with_envelopes(plan, task_, good);
   for (std::uint64_t batch = 0; batch < kEnvelopeBatches; ++batch) {
-    const Validation further = validated(plan, kEnvelopeSeed + batch);
+    const std::vector<Draw> further = drawn(plan, kEnvelopeSeed + batch);
     if (auto miss = missed_draw(further, task_.particle_sigmas)) return *miss;
-    const std::vector<Chain> more = further.good_chains();
+    const std::vector<Chain> more = good_chains(further);
     if (stay_within(judged, more)) break;
     append(good, more);
     judged = with_envelopes(plan, task_, good);
@@ -83,8 +92,12 @@ std::variant<Plan, Refutation> PathJudge::widened(const Plan& plan, std::vector<
   return judged;
 }
 
-Judgement PathJudge::estimated(Plan plan, Certification certification) {
-  Validation estimate = validated(plan, kEstimateSeed);
+Judgement PathJudge::estimated(Plan plan, Certification certification, const Extremes& extremes) {
+  Validation estimate;
+  estimate.draws = run(plan, drawn_starts(judging_seed(plan), parameters_.draws,
+                                          DrawnPhysics::kEven, plan, task_, start_, pool_.front()));
+  estimate.corners = decided_by(plan, task_, extremes.corners);
+  estimate.rim = decided_by(plan, task_, extremes.rim);
   plan.cost = certification.cost;
   plan.draws = static_cast<std::uint32_t>(estimate.draws.size());
   plan.draws_at_goal = static_cast<std::uint32_t>(estimate.at_goal());
@@ -100,13 +113,25 @@ Certification PathJudge::certified(const Plan& plan) {
   return result;
 }
 
-Validation PathJudge::validated(const Plan& plan, std::uint64_t seed) {
-  Validation result = timed(now_s_, effort_.validation_s, [&] {
-    const ValidationParameters parameters{parameters_.draws, seed, seed != kEstimateSeed};
-    return validate(plan, task_, start_, parameters, pool_);
+PathJudge::Extremes PathJudge::extremes_of(const Plan& plan) {
+  return {run(plan, corner_starts(plan, task_, start_, pool_.front())),
+          run(plan, rim_starts(plan, task_, start_, pool_.front()))};
+}
+
+std::vector<Draw> PathJudge::drawn(const Plan& plan, std::uint64_t seed) {
+  const auto starts = drawn_starts(seed, parameters_.draws, DrawnPhysics::kCorners, plan, task_,
+                                   start_, pool_.front());
+  return run(plan, starts, [this](const Draw& draw) {
+    return !draw.at_goal && draw.mahalanobis <= task_.particle_sigmas;
   });
-  effort_.validation_moves += result.moves();
-  return result;
+}
+
+std::vector<Draw> PathJudge::run(const Plan& plan, std::span<const JudgedStart> starts,
+                                 const std::function<bool(const Draw&)>& until) {
+  std::vector<Draw> draws = timed(now_s_, effort_.validation_s,
+                                  [&] { return run_starts(plan, task_, starts, pool_, until); });
+  for (const Draw& draw : draws) effort_.validation_moves += draw.chain.steps.size();
+  return draws;
 }
 
 }  // namespace tenon::planner

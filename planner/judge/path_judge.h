@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -25,7 +26,7 @@ namespace tenon::planner {
 struct JudgedPlan {
   Plan plan;
   Certification certification;
-  Validation estimate;  ///< by the draws of kEstimateSeed
+  Validation estimate;  ///< as validate() would say of the plan
 };
 
 using Judgement = std::variant<JudgedPlan, Refutation>;
@@ -60,6 +61,12 @@ class PathJudge {
   [[nodiscard]] const JudgeEffort& effort() const { return effort_; }
 
  private:
+  /// Corners and rim of a plan, run once: its envelopes change no motion.
+  struct Extremes {
+    std::vector<Draw> corners;
+    std::vector<Draw> rim;
+  };
+
   /// Where the plan does not hold at its speeds, the distances are lowered, to be tried next. At
   /// contact speed throughout there is nothing to lower.
   [[nodiscard]] Judgement at_speeds(const Plan& plan, Certification certification,
@@ -67,9 +74,14 @@ class PathJudge {
   /// Envelopes around the chains, widened to more draws until all of a batch stay within them: what
   /// one start in a hundred does is no reason to stop.
   [[nodiscard]] std::variant<Plan, Refutation> widened(const Plan& plan, std::vector<Chain> good);
-  [[nodiscard]] Judgement estimated(Plan plan, Certification certification);
+  [[nodiscard]] Judgement estimated(Plan plan, Certification certification,
+                                    const Extremes& extremes);
   [[nodiscard]] Certification certified(const Plan& plan);
-  [[nodiscard]] Validation validated(const Plan& plan, std::uint64_t seed);
+  [[nodiscard]] Extremes extremes_of(const Plan& plan);
+  /// Draws that may refute, every second one at a corner of friction and size.
+  [[nodiscard]] std::vector<Draw> drawn(const Plan& plan, std::uint64_t seed);
+  [[nodiscard]] std::vector<Draw> run(const Plan& plan, std::span<const JudgedStart> starts,
+                                      const std::function<bool(const Draw&)>& until = {});
 
   const Task& task_;
   const Start& start_;

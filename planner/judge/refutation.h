@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "planner/judge/certification.h"
@@ -22,7 +23,14 @@ struct Refutation {
 
 /// The first draw within the particles' reach that missed the goal; empty where all of them met it.
 /// @param particle_sigmas how far the particles reach, standard deviations
-[[nodiscard]] std::optional<Refutation> missed_draw(const Validation& validation,
+[[nodiscard]] std::optional<Refutation> missed_draw(std::span<const Draw> draws,
                                                     double particle_sigmas);
+
+/// The first start at a corner of friction and size that missed the goal, by name.
+[[nodiscard]] std::optional<Refutation> missed_corner(std::span<const Draw> corners,
+                                                      const Task& task);
+
+/// "friction 0.6, the part 0.5 mm larger than drawn", for people.
+[[nodiscard]] std::string corner_name(const PhysicalParameters& corner, const Task& task);
 
 }  // namespace tenon::planner

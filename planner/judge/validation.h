@@ -1,13 +1,16 @@
 #pragma once
-// Many starts drawn from the start's distribution, each run through the plan: what the particles on
-// the belief's rim cannot say about its inside.
+// Many starts, each run through the plan: what the particles on the belief's rim cannot say about
+// its inside, and about the corners of what the task leaves open.
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "planner/belief/rollout_pool.h"
 #include "planner/judge/chain.h"
+#include "planner/judge/judged_starts.h"
 #include "shared/plan/plan.h"
 #include "shared/task/task.h"
 
@@ -21,42 +24,47 @@ struct Draw {
 
 struct Validation {
   std::vector<Draw> draws;
-  /// Starts where drawing ends: along every uncertain coordinate both ways and to every corner
-  /// between them, at both extremes of friction. Nobody drew them, so no statistic counts them;
-  /// they show how far the plan's steps travel from starts that are hardly ever drawn.
+  /// corner_starts(): nobody drew them, so no statistic counts them, but a plan has to hold there.
+  std::vector<Draw> corners;
+  /// rim_starts(): beyond what a plan has to hold for. They show how far its steps travel from
+  /// starts that are hardly ever drawn.
   std::vector<Draw> rim;
 
   [[nodiscard]] std::size_t at_goal() const;
   /// Those within `sigmas` standard deviations, and how many of them ended at the goal.
   [[nodiscard]] std::size_t within(double sigmas) const;
   [[nodiscard]] std::size_t at_goal_within(double sigmas) const;
-
-  /// Those that ended at the goal, the rim's too.
-  [[nodiscard]] std::vector<Chain> good_chains() const;
-  /// Guarded moves that were simulated for all of it.
-  [[nodiscard]] std::size_t moves() const;
 };
 
-/// The draws by which a plan is judged are not those that refuted other paths, nor those that its
-/// envelopes were widened to.
+/// How many of them ended at the goal.
+[[nodiscard]] std::size_t arrived(std::span<const Draw> draws);
+/// The chains of those that ended at the goal.
+[[nodiscard]] std::vector<Chain> good_chains(std::span<const Draw> draws);
+
+/// The draws by which a plan is judged are none that its search or its envelopes have seen, nor any
+/// that somebody could look at while the planner is made: their seed comes from the plan itself,
+/// all of its bytes but what judging writes into them (cost, bound, counts).
+[[nodiscard]] std::uint64_t judging_seed(const Plan& plan);
 inline constexpr std::uint64_t kSearchSeed = 1;
-inline constexpr std::uint64_t kEstimateSeed = 2;
 inline constexpr std::uint64_t kEnvelopeSeed = 3;  ///< and the following ones
 
 /// How many draws a plan is judged by.
 inline constexpr std::size_t kDrawsMin = 200;
 inline constexpr std::size_t kDrawsMax = 100'000;
 
-struct ValidationParameters {
-  std::size_t draws = kDrawsMin;
-  std::uint64_t seed = kSearchSeed;
-  /// Stop soon after a draw within the particles' reach that misses the goal: enough to refuse.
-  bool stop_when_refuted = false;
-};
+/// Runs the starts through the plan, in their order.
+/// @param until true of a draw: those behind it are left out, the same at any number of threads
+[[nodiscard]] std::vector<Draw> run_starts(const Plan& plan, const Task& task,
+                                           std::span<const JudgedStart> starts, RolloutPool& pool,
+                                           const std::function<bool(const Draw&)>& until = {});
 
-/// Normal starts out to c_p + 1 standard deviations (farther ones, and those in collision, are
-/// drawn again), friction even over the task's range. On the rim, starts in collision are left out.
+/// All that a finished plan is judged by, from the file alone.
 [[nodiscard]] Validation validate(const Plan& plan, const Task& task, const Start& start,
-                                  const ValidationParameters& parameters, RolloutPool& pool);
+                                  std::size_t draws, RolloutPool& pool);
+
+/// What has been run through a plan, as the same plan with other rules would have gone on with it.
+/// Nothing is simulated. @param plan with the same displacements and speeds
+[[nodiscard]] std::vector<Draw> decided_by(const Plan& plan, const Task& task,
+                                           std::span<const Draw> draws);
 
 }  // namespace tenon::planner

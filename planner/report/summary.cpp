@@ -6,6 +6,7 @@
 
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
+#include "shared/base/wilson.h"
 #include "shared/task/inserted.h"
 
 namespace tenon::planner {
@@ -99,13 +100,23 @@ std::string cost_text(const Plan& plan) {
 }
 
 std::string estimate_text(const Validation& validation, const Task& task) {
-  const auto arrived = std::count_if(validation.rim.begin(), validation.rim.end(),
-                                     [](const Draw& draw) { return draw.at_goal; });
+  const std::size_t count = validation.draws.size();
+  const Interval interval = wilson_interval(validation.at_goal(), count);
   return format(
-      "%zu of %zu draws end at the goal (%zu of %zu within %g sigma), and %zu of %zu on the rim",
-      validation.at_goal(), validation.draws.size(),
+      "%zu of %zu draws end at the goal (95 %%: %.1f to %.1f %%), %zu of %zu within %g sigma",
+      validation.at_goal(), count, 1e2 * interval.low, 1e2 * interval.high,
       validation.at_goal_within(task.particle_sigmas), validation.within(task.particle_sigmas),
-      task.particle_sigmas, static_cast<std::size_t>(arrived), validation.rim.size());
+      task.particle_sigmas);
+}
+
+std::string corners_text(const Validation& validation, const Task& task) {
+  std::string physics = format("friction %g and %g", task.friction.low, task.friction.high);
+  if (task.oversize_m > 0.0) {
+    physics += format(", the part as drawn and %g mm larger", 1e3 * task.oversize_m);
+  }
+  return format("%zu of %zu starts %g sigma out end at the goal, at ", arrived(validation.corners),
+                validation.corners.size(), task.particle_sigmas) +
+         physics;
 }
 
 std::string step_table(const Plan& plan) {
@@ -147,6 +158,10 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
              t.attractors_s, t.search_s, t.certification_s, t.validation_s);
   text += "validation: " + estimate_text(report.validation, task) +
           format(", peak force %.0f N\n", peak_force_N(report));
+  text += "corners: " + corners_text(report.validation, task) + "\n";
+  text += format("beyond the promise: %zu of %zu starts %g sigma out end there too\n",
+                 arrived(report.validation.rim), report.validation.rim.size(),
+                 task.particle_sigmas + 1.0);
   for (const std::string& draw : missed(report, task)) text += "missed: " + draw + "\n";
   for (const std::string& change : report.adapted) text += "for the cell: " + change + "\n";
   for (const std::string& refusal : report.refusals) text += "refuted: " + refusal + "\n";
@@ -186,6 +201,13 @@ std::string statistics_json(const PlanReport& report, const Task& task) {
     json["search_lower_bound"] = report.search.lower_bound;
     json["draws"] = report.plan->draws;
     json["draws_at_goal"] = report.plan->draws_at_goal;
+    const Interval interval = wilson_interval(report.plan->draws_at_goal, report.plan->draws);
+    json["wilson95_low"] = interval.low;
+    json["wilson95_high"] = interval.high;
+    json["corners"] = report.validation.corners.size();
+    json["corners_at_goal"] = arrived(report.validation.corners);
+    json["beyond"] = report.validation.rim.size();
+    json["beyond_at_goal"] = arrived(report.validation.rim);
     json["particle_sigmas"] = task.particle_sigmas;
     json["draws_within_particles"] = report.validation.within(task.particle_sigmas);
     json["draws_within_particles_at_goal"] = report.validation.at_goal_within(task.particle_sigmas);

@@ -9,6 +9,8 @@
 
 namespace tenon {
 
+std::size_t all_cores() { return std::max(1U, std::thread::hardware_concurrency()); }
+
 void fan_out(std::size_t jobs, std::size_t threads,
              const std::function<void(std::size_t i, std::size_t worker)>& job) {
   std::atomic<std::size_t> next{0};

@@ -6,6 +6,9 @@
 
 namespace tenon {
 
+/// As many as the machine runs at a time; at least 1.
+[[nodiscard]] std::size_t all_cores();
+
 /// Calls job(i, worker) once for each i < jobs, begun in this order, and returns when all have
 /// ended. At most `threads` run at a time, the caller's included; `worker` is which of them, from 0
 /// for the caller's. With one thread, or one job, all of it runs on the caller's. What a job gives

@@ -4,16 +4,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "shared/base/wilson.h"
+
 namespace tenon::sim {
-
-struct Interval {
-  double low = 0.0;
-  double high = 0.0;
-};
-
-/// Wilson's score interval of a proportion, 95 %, without continuity correction (Wilson 1927).
-/// [0, 1] where nothing was counted.
-[[nodiscard]] Interval wilson_interval(std::size_t successes, std::size_t count);
 
 /// The probability that a normal draw in `dimensions` falls within a Mahalanobis distance.
 [[nodiscard]] double mass_within(double distance, int dimensions);

@@ -102,7 +102,9 @@ double Scene::overlap_m() const {
   for (const ShapeGeometry& held : held_) {
     for (const ShapeGeometry& environment : environment_) {
       if (held.separation_m(environment) > 0.0) continue;
-      overlap_m = std::max(overlap_m, deepest_m(touching_points(held, environment, buffer)));
+      const auto one = prism_contact(held, environment);
+      overlap_m = std::max(overlap_m, one ? static_cast<double>(one->depth)
+                                          : deepest_m(touching_points(held, environment, buffer)));
     }
   }
   return overlap_m;

@@ -175,10 +175,7 @@ TEST_P(SharedPlan, EndsEveryParticleOfEveryVariantInsertedAtTheGoal) {
   RolloutPool pool(sim::OdeRollout(task), 2);
   const Certification certification = certify(bytes, task, pool);
   EXPECT_TRUE(certification.holds());
-  ValidationParameters draws;
-  draws.draws = kDraws;
-  draws.seed = kEstimateSeed;
-  expect_good(task, bytes, certification, validate(plan, task, start_of(plan, task), draws, pool));
+  expect_good(task, bytes, certification, validate(plan, task, start_of(plan, task), kDraws, pool));
 }
 
 std::string plan_name(const testing::TestParamInfo<Shipped>& info) { return info.param.plan; }
@@ -197,11 +194,8 @@ TEST(SharedBoxPlan, EndsEveryParticleOfEveryVariantInsertedAtTheGoalOfTheGantry)
   const auto [task, plan] = tests::planned_box(tests::gantry_cell(), "1");
   const std::vector<std::uint8_t> bytes = encode_plan(plan);
   RolloutPool pool(sim::OdeRollout(task), 2);
-  ValidationParameters draws;
-  draws.draws = kDraws;
-  draws.seed = kEstimateSeed;
   expect_good(task, bytes, certify(bytes, task, pool),
-              validate(plan, task, start_of(plan, task), draws, pool));
+              validate(plan, task, start_of(plan, task), kDraws, pool));
 }
 
 // The executable made it on one thread.

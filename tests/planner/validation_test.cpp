@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+#include <utility>
+
 #include "tests/planner/room_plan.h"
 
 namespace tenon::planner {
@@ -33,7 +37,7 @@ TEST(Validation, TheRimStandsWhereDrawingEndsAndCountsInNoStatistic) {
   EXPECT_EQ(validation.draws.size(), 20U);
   EXPECT_EQ(report.plan->draws, 20U);
   EXPECT_LE(validation.at_goal(), 20U);
-  EXPECT_EQ(validation.good_chains().size(), validation.at_goal() + 16U);
+  EXPECT_EQ(good_chains(validation.draws).size(), validation.at_goal());
 }
 
 TEST(Validation, AStartOnTheRimStaysWithinTheEnvelopesHoweverFewWereDrawn) {
@@ -50,6 +54,71 @@ TEST(Validation, AStartOnTheRimStaysWithinTheEnvelopesHoweverFewWereDrawn) {
     const Chain chain = run_chain(rollout, *report.plan, particle, task.rollout_step_us);
     EXPECT_TRUE(chain.done) << chain.failure;
   }
+}
+
+TEST(Validation, CornersStandOnTheRimOfTheReachWithEveryExtremeOfPhysics) {
+  Task task = room_task();
+  task.oversize_m = 1e-3;
+  const PlanReport report = planned_by(20, task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+  const std::vector<Draw>& corners = report.validation.corners;
+  ASSERT_EQ(corners.size(), 32U);  // four tips and four corners, at two frictions and two sizes
+  EXPECT_EQ(arrived(corners), 32U);
+  std::set<std::pair<double, double>> physics;
+  for (const Draw& draw : corners) {
+    EXPECT_EQ(draw.mahalanobis, task.particle_sigmas);
+    physics.emplace(draw.chain.start.physics.friction, draw.chain.start.physics.oversize_m);
+  }
+  const std::set<std::pair<double, double>> expected = {{task.friction.low, 0.0},
+                                                        {task.friction.low, 1e-3},
+                                                        {task.friction.high, 0.0},
+                                                        {task.friction.high, 1e-3}};
+  EXPECT_EQ(physics, expected);
+}
+
+TEST(Validation, APlanIsJudgedByDrawsThatItsOwnBytesChoose) {
+  const Task task = room_task();
+  const Plan plan = *planned_by(20, task).plan;
+  Plan other = plan;
+  other.cost += 1.0;
+  other.bound = 1.0;
+  other.draws = 7;
+  other.draws_at_goal = 3;
+  EXPECT_EQ(judging_seed(other), judging_seed(plan));
+  other = plan;
+  other.steps.front().displacement.x() += 1e-3;
+  EXPECT_NE(judging_seed(other), judging_seed(plan));
+}
+
+TEST(Validation, WhatWouldStopADrawLeavesOutAllBehindItAtAnyNumberOfThreads) {
+  const Task task = room_task();
+  const Plan plan = *planned_by(20, task).plan;
+  for (const std::size_t threads : {1U, 4U}) {
+    RolloutPool pool(WallRollout(room()), threads);
+    const auto starts =
+        drawn_starts(5, 100, DrawnPhysics::kEven, plan, task, task.starts.front(), pool.front());
+    const auto far = [&](const Draw& draw) { return draw.mahalanobis > 1.9; };
+    const auto all = run_starts(plan, task, starts, pool);
+    const auto until = run_starts(plan, task, starts, pool, far);
+    ASSERT_EQ(all.size(), 100U);
+    ASSERT_LT(until.size(), 100U);
+    EXPECT_TRUE(far(until.back()));
+    EXPECT_EQ(std::find_if(all.begin(), all.end(), far) - all.begin() + 1,
+              static_cast<std::ptrdiff_t>(until.size()));
+  }
+}
+
+TEST(Validation, OtherRulesDecideOnTheSameMovesWithoutSimulatingThem) {
+  const Task task = room_task();
+  const PlanReport report = planned_by(20, task);
+  Plan strict = *report.plan;
+  for (OutcomeRule& rule : strict.steps.front().outcomes) rule.successor = kSuccessorFail;
+  for (const Draw& draw : decided_by(strict, task, report.validation.corners)) {
+    EXPECT_FALSE(draw.at_goal);
+    EXPECT_EQ(draw.chain.moves.size(), 1U);
+    EXPECT_FALSE(draw.chain.failure.empty());
+  }
+  EXPECT_EQ(arrived(decided_by(*report.plan, task, report.validation.corners)), 16U);
 }
 
 TEST(Validation, AStartOnTheRimThatCollidesIsLeftOut) {

@@ -1,0 +1,114 @@
+#include "planner/judge/judged_starts.h"
+
+#include <cmath>
+
+#include "shared/base/random.h"
+
+namespace tenon::planner {
+namespace {
+
+// A start whose every draw collides is no start; the planner has refused it before.
+constexpr int kAttempts = 1000;
+
+double reach_sigmas(const Task& task) { return task.particle_sigmas + 1.0; }
+
+/// Lowest and highest friction with the part as large as it may be, then as drawn where that is
+/// something else.
+std::vector<PhysicalParameters> corners(const Plan& plan, const Task& task) {
+  std::vector<PhysicalParameters> all;
+  for (const double friction : {task.friction.low, task.friction.high}) {
+    all.push_back({friction, plan.contact_stiffness_Npm, task.oversize_m});
+    if (task.oversize_m > 0.0) all.push_back({friction, plan.contact_stiffness_Npm, 0.0});
+  }
+  return all;
+}
+
+JudgedStart draw_place(Random& random, const Task& task, const Start& start, Rollout& rollout) {
+  JudgedStart drawn;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    Vector6 offset = Vector6::Zero();
+    double squares = 0.0;
+    for (int axis = 0; axis < 6; ++axis) {
+      if (!has(task.coordinates, axis) || start.sigma[axis] == 0.0) continue;
+      const double z = random.normal();
+      squares += z * z;
+      offset[axis] = z * start.sigma[axis];
+    }
+    drawn.particle.pose = displaced(start.pose, offset);
+    drawn.mahalanobis = std::sqrt(squares);
+    if (drawn.mahalanobis > reach_sigmas(task)) continue;
+    if (!rollout.in_collision(drawn.particle.pose)) break;
+  }
+  return drawn;
+}
+
+/// Unit vectors along every uncertain coordinate both ways, and to every corner between them.
+std::vector<Vector6> rim_directions(const Task& task, const Start& start) {
+  std::vector<int> axes;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (has(task.coordinates, axis) && start.sigma[axis] > 0.0) axes.push_back(axis);
+  }
+  std::vector<Vector6> directions;
+  for (const int axis : axes) {
+    directions.push_back(Vector6::Unit(axis));
+    directions.push_back(-Vector6::Unit(axis));
+  }
+  if (axes.size() < 2) return directions;
+  for (unsigned corner = 0; corner < 1U << axes.size(); ++corner) {
+    Vector6 direction = Vector6::Zero();
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      direction[axes[i]] = (corner >> i & 1U) != 0 ? 1.0 : -1.0;
+    }
+    directions.push_back(direction.normalized());
+  }
+  return directions;
+}
+
+/// Those of a rim that do not collide, each with all of the parameters.
+std::vector<JudgedStart> starts_at(double sigmas, const std::vector<PhysicalParameters>& physics,
+                                   const Task& task, const Start& start, Rollout& rollout) {
+  std::vector<JudgedStart> starts;
+  for (const Vector6& direction : rim_directions(task, start)) {
+    const Pose pose = displaced(start.pose, sigmas * direction.cwiseProduct(start.sigma));
+    if (rollout.in_collision(pose)) continue;
+    for (const PhysicalParameters& one : physics) starts.push_back({{pose, {}, one}, sigmas});
+  }
+  return starts;
+}
+
+}  // namespace
+
+std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, DrawnPhysics physics,
+                                      const Plan& plan, const Task& task, const Start& start,
+                                      Rollout& rollout) {
+  const std::vector<PhysicalParameters> extremes = corners(plan, task);
+  Random random(seed);
+  std::vector<JudgedStart> starts;
+  for (std::size_t i = 0; i < count; ++i) {
+    JudgedStart drawn = draw_place(random, task, start, rollout);
+    PhysicalParameters& p = drawn.particle.physics;
+    p.contact_stiffness_Npm = plan.contact_stiffness_Npm;
+    p.friction = task.friction.low + random.uniform() * (task.friction.high - task.friction.low);
+    if (task.oversize_m > 0.0) p.oversize_m = random.uniform() * task.oversize_m;
+    const bool at_corner = physics == DrawnPhysics::kCorners && i % 2 == 1;
+    if (at_corner) p = extremes[i / 2 % extremes.size()];
+    starts.push_back(drawn);
+  }
+  return starts;
+}
+
+std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task, const Start& start,
+                                       Rollout& rollout) {
+  return starts_at(task.particle_sigmas, corners(plan, task), task, start, rollout);
+}
+
+std::vector<JudgedStart> rim_starts(const Plan& plan, const Task& task, const Start& start,
+                                    Rollout& rollout) {
+  std::vector<PhysicalParameters> largest;
+  for (const PhysicalParameters& one : corners(plan, task)) {
+    if (one.oversize_m == task.oversize_m) largest.push_back(one);
+  }
+  return starts_at(reach_sigmas(task), largest, task, start, rollout);
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,40 @@
+#pragma once
+// The starts that a plan is judged from: drawn, and set where draws are rare. Offline; one thread.
+
+#include <cstdint>
+#include <vector>
+
+#include "shared/plan/plan.h"
+#include "shared/ports/rollout.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+struct JudgedStart {
+  Particle particle;
+  double mahalanobis = 0.0;  ///< how far out it is, standard deviations
+};
+
+/// What of friction and size the draws have.
+enum class DrawnPhysics : std::uint8_t {
+  kEven,     ///< drawn evenly from their ranges
+  kCorners,  ///< every second draw at one of the corners of these ranges, in turn
+};
+
+/// Normal starts out to c_p + 1 standard deviations; farther ones, and those in collision, are
+/// drawn again. @param rollout asked for collisions
+[[nodiscard]] std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count,
+                                                    DrawnPhysics physics, const Plan& plan,
+                                                    const Task& task, const Start& start,
+                                                    Rollout& rollout);
+
+/// On the rim of the particles' reach, c_p standard deviations out, along every uncertain
+/// coordinate both ways and to every corner between them; each at all corners of friction and size.
+[[nodiscard]] std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task,
+                                                     const Start& start, Rollout& rollout);
+
+/// Likewise where drawing ends, one standard deviation farther, with the largest part.
+[[nodiscard]] std::vector<JudgedStart> rim_starts(const Plan& plan, const Task& task,
+                                                  const Start& start, Rollout& rollout);
+
+}  // namespace tenon::planner
