@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "planner/cell_fit.h"
+#include "planner/goal_certainty.h"
 #include "planner/report/html_report.h"
 #include "planner/report/inspection.h"
 #include "planner/report/summary.h"
@@ -72,6 +73,8 @@ planner::CellFit task_of(const Plan& plan, const std::string& file, const std::s
                  "made from\n",
                  file.c_str());
   }
+  sim::OdeRollout physics(task);
+  task = planner::with_goal_certainty(std::move(task), physics);
   if (!cell_file.empty()) return planner::fit_to_cell(task, load_cell(cell_file));
   planner::CellFit fit{task, {}, {}};
   fit.assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;

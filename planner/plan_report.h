@@ -51,6 +51,7 @@ struct PlanReport {
   std::size_t expansions = 0;        ///< of all searches
   std::size_t expansions_first = 0;  ///< of the first of them, before anything was refuted
   std::size_t guides = 0;            ///< that led the searches
+  CoordinateMask unsettled = 0;      ///< see Attractors
   std::size_t states = 0;
   std::vector<std::string> refusals;  ///< what was refuted, and why
   std::vector<std::string> adapted;   ///< what the cell changed in the task, see fit_to_cell()

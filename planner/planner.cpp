@@ -1,12 +1,14 @@
 #include "planner/planner.h"
 
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <variant>
 
 #include "planner/belief/belief_summary.h"
 #include "planner/belief/rollout_pool.h"
 #include "planner/collision.h"
+#include "planner/goal_certainty.h"
 #include "planner/judge/path_judge.h"
 #include "planner/search/contact_greedy.h"
 #include "planner/search_moves.h"
@@ -83,12 +85,13 @@ class Planning {
 
   Attractors guides_from(const Belief& start) {
     Attractors attractors = timed(now_s_, report_.times.attractors_s, [&] {
-      return is_baseline() ? Attractors{{}, goal_attractors(task_, start, long_succ_)}
+      return is_baseline() ? Attractors{{}, goal_attractors(task_, start, long_succ_), 0}
                            : find_attractors(task_, start, long_succ_, pool_.front(),
                                              [this] { return out_of_time(); });
     });
     report_.guides = attractors.guides.size();
-    tell(guides_found(report_.guides, long_succ_.counters().rollouts));
+    report_.unsettled = attractors.unsettled;
+    tell(guides_found(attractors.guides, long_succ_.counters().rollouts));
     return attractors;
   }
 
@@ -165,7 +168,9 @@ class Planning {
 
 PlanReport make_plan(const Task& task, const Start& start, const Rollout& rollout,
                      const PlannerOptions& options, const ClockSeconds& now_s) {
-  return Planning(task, start, rollout, options, now_s).run();
+  const std::unique_ptr<Rollout> physics = rollout.clone();
+  const Task certain = with_goal_certainty(task, *physics);
+  return Planning(certain, start, rollout, options, now_s).run();
 }
 
 }  // namespace tenon::planner

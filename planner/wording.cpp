@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 
 namespace tenon::planner {
@@ -29,11 +30,33 @@ std::string tried(const PlanReport& report, const BeliefGraph& graph) {
          (report.refusals.empty() ? "" : "; last refuted: " + report.refusals.back());
 }
 
+/// Which directions stay open, and what would settle them.
+std::string unsettled(CoordinateMask axes) {
+  std::string names;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(axes, axis)) continue;
+    names += std::string(names.empty() ? "" : ", ") + axis_name(axis);
+  }
+  if (names.empty()) return {};
+  return "; nothing that was pushed against settles " + names +
+         ": it takes a face across it that the part can reach with its whole spread, or a smaller "
+         "sigma there";
+}
+
 }  // namespace
 
-std::string guides_found(std::size_t guides, std::uint64_t moves) {
-  return format("%zu guides, found with %llu moves", guides,
-                static_cast<unsigned long long>(moves));
+std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves) {
+  std::string text = format("%zu guides, found with %llu moves", guides.size(),
+                            static_cast<unsigned long long>(moves));
+  for (const Guide& guide : guides) {
+    std::string contacts;
+    for (const ContactAttractor& contact : guide.contacts) {
+      contacts += format("%s%s%s to %s", contacts.empty() ? "" : ", ", contact.sign > 0 ? "+" : "-",
+                         axis_name(contact.axis), contact.face ? "a face" : "an edge");
+    }
+    text += "; " + contacts;
+  }
+  return text;
 }
 
 std::string path_found(const SearchResult& search) {
@@ -60,7 +83,7 @@ std::string no_path(PlanStatus status, const PlanReport& report, const BeliefGra
   } else if (status == PlanStatus::kNoAttractor) {
     what = "no push from the start reduces its uncertainty, and no path exists after ";
   }
-  return what + tried(report, graph);
+  return what + tried(report, graph) + unsettled(report.unsettled);
 }
 
 std::string every_path_refuted(const PlanReport& report, std::size_t paths) {

@@ -6,17 +6,19 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "planner/judge/refutation.h"
 #include "planner/plan_report.h"
 #include "planner/search/belief_graph.h"
+#include "planner/search/guide.h"
 #include "planner/search/mha_search.h"
 #include "shared/task/task.h"
 
 namespace tenon::planner {
 
 // Progress.
-[[nodiscard]] std::string guides_found(std::size_t guides, std::uint64_t moves);
+[[nodiscard]] std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves);
 [[nodiscard]] std::string path_found(const SearchResult& search);
 
 /// What refuted a path, and what was learnt from it.

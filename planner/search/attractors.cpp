@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "planner/search/guide_moves.h"
 #include "shared/base/random.h"
 
 namespace tenon::planner {
@@ -17,6 +18,8 @@ namespace {
 constexpr std::size_t kMaxGuides = 2;
 // How far beyond w2 times the anchor a guide may begin: not at all.
 constexpr double kWithinAnchor = 0.98;
+// How far off a face the nearest particle begins to push.
+constexpr double kOffFace_m = 5e-3;
 // A sample that collides is drawn again, this often.
 constexpr int kAttempts = 20;
 // Every order of contacts is tried, so there are not to be too many.
@@ -39,6 +42,14 @@ Eigen::AlignedBox3d around(const std::vector<Shape>& shapes) {
 
 /// The step labels count two directions an axis.
 int axis_of(const Primitive& push) { return push.label / 2; }
+int sign_of(const Primitive& push) { return push.label % 2 == 0 ? 1 : -1; }
+
+/// All of a belief's particles are in contact against a push.
+bool on_face(const Belief& belief, const Primitive& push) {
+  return std::all_of(belief.particles.begin(), belief.particles.end(), [&](const Particle& p) {
+    return p.signature.sign(axis_of(push)) == -sign_of(push);
+  });
+}
 
 /// Into a held contact or straight away from it.
 bool pushes_along(const Primitive& primitive, ContactSignature signature) {
@@ -99,8 +110,10 @@ class GuideSearch {
       const BeliefSummary end = summarise(*ends[i], task_);
       const bool together = end.spread[axis] < task_.attractor_ratio * from.spread[axis];
       if (!together || end.uncertainty_m2 >= from.uncertainty_m2) continue;
+      if (out_of_reach(from.mean, end.mean)) continue;
       std::vector<ContactAttractor> contacts = before;
-      contacts.push_back({axis, end.mean, end.spread[axis], end.uncertainty_m2, std::nullopt});
+      contacts.push_back({axis, sign_of(pushes[i]), end.mean, end.spread[axis], end.uncertainty_m2,
+                          on_face(*ends[i], pushes[i]), std::nullopt});
       keep(contacts);
       if (end.uncertainty_m2 > task_.goal_uncertainty_m2) push_from(*ends[i], contacts);
     }
@@ -124,21 +137,39 @@ class GuideSearch {
     return belief;
   }
 
-  /// Pushes from drawn places with the start's spread, then guides that go from one of the contacts
-  /// to the next: for parts that a push from the start does not meet.
-  void sample(Rollout& rollout) {
+  /// Pushes from opposite every face that stands across an axis, and from drawn places, with the
+  /// start's spread, then guides that go from one of the contacts to the next: for parts that a
+  /// push from the start does not meet.
+  void look_around(Rollout& rollout) {
     std::array<std::vector<ContactAttractor>, 6> known;
     for (const Guide& guide : found_) {
       const ContactAttractor& contact = guide.contacts.front();
       auto& of_axis = known[static_cast<std::size_t>(contact.axis)];
       if (find_known(contact, of_axis) == of_axis.end()) of_axis.push_back(contact);
     }
+    if (task_.guide_moves) {
+      push_against_faces(rollout, known);
+      combine(known, seed_.uncertainty_m2, {});
+      if (certain()) return;
+    }
     Random random(kSampleSeed);
     for (std::size_t i = 0; i < task_.attractor_samples && !stopped(); ++i) {
       const Belief belief = drawn(random, rollout);
-      if (!belief.particles.empty()) push_once(belief, known);
+      if (!belief.particles.empty()) push_once(belief, primitives_, known);
     }
     combine(known, seed_.uncertainty_m2, {});
+  }
+
+  /// See Attractors::unsettled; before take().
+  [[nodiscard]] CoordinateMask unsettled() const {
+    CoordinateMask mask = 0;
+    for (int axis = 0; axis < 6; ++axis) {
+      const bool known = std::any_of(found_.begin(), found_.end(), [axis](const Guide& guide) {
+        return contains(guide.contacts, axis);
+      });
+      if (seed_.spread[axis] > 0.0 && !known) mask |= static_cast<CoordinateMask>(1U << axis);
+    }
+    return mask;
   }
 
   /// The cheapest guides, scaled.
@@ -149,8 +180,9 @@ class GuideSearch {
     for (const Guide& guide : found_) enough_m2 = std::min(enough_m2, left_m2(guide));
     enough_m2 = std::max(enough_m2, task_.goal_uncertainty_m2);
     std::erase_if(found_, [&](const Guide& guide) { return left_m2(guide) > enough_m2; });
-    std::stable_sort(found_.begin(), found_.end(),
-                     [&](const Guide& a, const Guide& b) { return cost(a) < cost(b); });
+    std::stable_sort(found_.begin(), found_.end(), [&](const Guide& a, const Guide& b) {
+      return std::pair(edges(a), cost(a)) < std::pair(edges(b), cost(b));
+    });
     if (found_.size() > kMaxGuides) found_.resize(kMaxGuides);
     const double allowed = kWithinAnchor * task_.w2 * anchor_heuristic(seed_, task_);
     for (Guide& guide : found_) {
@@ -164,6 +196,24 @@ class GuideSearch {
 
  private:
   [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
+
+  /// How many of a guide's contacts are edges, which hold less well than faces. The lattice alone
+  /// has no moves to choose by that.
+  [[nodiscard]] std::ptrdiff_t edges(const Guide& guide) const {
+    if (!task_.guide_moves) return 0;
+    return std::count_if(guide.contacts.begin(), guide.contacts.end(),
+                         [](const ContactAttractor& contact) { return !contact.face; });
+  }
+
+  /// Along some axis, of a single move.
+  [[nodiscard]] bool out_of_reach(const Pose& from, const Pose& to) const {
+    if (!task_.guide_moves) return false;
+    const Vector6 way = displacement_between(from, to);
+    for (int axis = 0; axis < 6; ++axis) {
+      if (std::abs(way[axis]) > longest_move(task_, axis)) return true;
+    }
+    return false;
+  }
 
   [[nodiscard]] static bool contains(const std::vector<ContactAttractor>& contacts, int axis) {
     return std::any_of(contacts.begin(), contacts.end(),
@@ -204,17 +254,42 @@ class GuideSearch {
     return {};
   }
 
-  /// Adds the contacts that one push along each axis makes.
-  void push_once(const Belief& belief, std::array<std::vector<ContactAttractor>, 6>& known) {
+  /// Against each side of each shape, from opposite its middle.
+  void push_against_faces(Rollout& rollout, std::array<std::vector<ContactAttractor>, 6>& known) {
+    const Eigen::AlignedBox3d part = around(task_.held);
+    for (const Shape& shape : task_.environment) {
+      const Eigen::AlignedBox3d face = around({shape});
+      for (const Primitive& push : primitives_) {
+        if (stopped()) return;
+        const int axis = axis_of(push);
+        Pose place = seed_.mean;
+        for (int other = 0; other < 3; ++other) {
+          if (!has(task_.coordinates, other)) continue;
+          place.position_m[other] = face.center()[other] - part.center()[other];
+        }
+        const double off_m =
+            0.5 * (face.sizes()[axis] + part.sizes()[axis]) + seed_.spread[axis] + kOffFace_m;
+        place.position_m[axis] -= sign_of(push) * off_m;
+        if (out_of_reach(seed_.mean, place)) continue;
+        const Belief belief = spread_about(place, rollout);
+        if (!belief.particles.empty()) push_once(belief, {push}, known);
+      }
+    }
+  }
+
+  /// Adds the contacts that each of these pushes makes.
+  void push_once(const Belief& belief, const std::vector<Primitive>& pushes,
+                 std::array<std::vector<ContactAttractor>, 6>& known) {
     const BeliefSummary from = summarise(belief, task_);
-    const auto ends = succ_.successors(belief, primitives_);
+    const auto ends = succ_.successors(belief, pushes);
     for (std::size_t i = 0; i < ends.size(); ++i) {
       if (!ends[i]) continue;
-      const int axis = axis_of(primitives_[i]);
+      const int axis = axis_of(pushes[i]);
       const BeliefSummary end = summarise(*ends[i], task_);
       if (end.spread[axis] >= task_.attractor_ratio * from.spread[axis]) continue;
       auto& of_axis = known[static_cast<std::size_t>(axis)];
-      const ContactAttractor contact{axis, end.mean, end.spread[axis], 0.0, from.mean};
+      const ContactAttractor contact{axis, sign_of(pushes[i]),           end.mean, end.spread[axis],
+                                     0.0,  on_face(*ends[i], pushes[i]), from.mean};
       const auto same = find_known(contact, of_axis);
       if (same != of_axis.end()) {
         if (contact.spread < same->spread) *same = contact;
@@ -283,9 +358,10 @@ Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngin
   search.push_from(start, {});
   const Belief about_goal = search.spread_about(task.goal, rollout);
   if (!about_goal.particles.empty()) search.push_from(about_goal, {});
-  if (!search.certain()) search.sample(rollout);
+  if (!search.certain()) search.look_around(rollout);
 
-  Attractors found{search.take(), goal_attractors(task, start, succ)};
+  const CoordinateMask unsettled = search.unsettled();
+  Attractors found{search.take(), goal_attractors(task, start, succ), unsettled};
   if (found.goals.size() > 1 && !found.guides.empty()) {
     Guide through = found.guides.front();
     through.goals.insert(through.goals.begin(), found.goals.back());

@@ -1,10 +1,32 @@
 #include "planner/search/belief_graph.h"
 
+#include <algorithm>
 #include <cassert>
 
+#include "planner/search/guide_moves.h"
 #include "planner/search/heuristics.h"
 
 namespace tenon::planner {
+namespace {
+
+// A part that slides off an edge does so a little elsewhere each time, and may catch on it: it
+// costs as much as so many further moves.
+constexpr double kSlideOffMoves = 2.0;
+
+/// Whether any particle has lost a contact along an axis that the move does not go along.
+bool slides_off(const Belief& before, const Belief& after, const Vector6& displacement) {
+  for (std::size_t i = 0; i < before.particles.size(); ++i) {
+    const ContactSignature held = before.particles[i].signature;
+    for (int axis = 0; axis < 6; ++axis) {
+      const bool lost =
+          held.sign(axis) != 0 && after.particles[i].signature.sign(axis) != held.sign(axis);
+      if (lost && displacement[axis] == 0.0) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
 
 BeliefGraph::BeliefGraph(const Task& task, const Belief& start, Attractors attractors,
                          SuccessorEngine& succ)
@@ -24,6 +46,10 @@ std::vector<Primitive> BeliefGraph::primitives(StateId state) const {
   for (std::size_t i = 0; i < attractors_.goals.size(); ++i) {
     if (const auto to_goal = direct(state, i)) all.push_back(*to_goal);
   }
+  if (task_.guide_moves) {
+    const auto suggested = guide_moves(task_, summaries_[state], attractors_.guides);
+    all.insert(all.end(), suggested.begin(), suggested.end());
+  }
   return all;
 }
 
@@ -37,18 +63,22 @@ std::vector<Edge> BeliefGraph::successors(StateId state) {
     if (!ends[i]) continue;
     const StateId to = number(*ends[i]);
     if (to == state) continue;
-    edges.push_back({to, edge_cost(summaries_[state], summaries_[to], task_), actions[i].label});
+    double cost = edge_cost(summaries_[state], summaries_[to], task_);
+    if (task_.guide_moves && slides_off(from, *ends[i], actions[i].displacement)) {
+      cost += kSlideOffMoves * move_cost(task_, summaries_[state].uncertainty_m2);
+    }
+    edges.push_back({to, cost, actions[i].label});
   }
   return edges;
 }
 
 Vector6 BeliefGraph::displacement(StateId state, int label) const {
-  for (const Primitive& primitive : steps_) {
-    if (primitive.label == label) return primitive.displacement;
-  }
-  const auto to_goal = direct(state, static_cast<std::size_t>(label - kDirectLabel));
-  assert(to_goal.has_value());
-  return to_goal->displacement;
+  const std::vector<Primitive> all = primitives(state);
+  const auto chosen = std::find_if(all.begin(), all.end(), [label](const Primitive& primitive) {
+    return primitive.label == label;
+  });
+  assert(chosen != all.end());
+  return chosen->displacement;
 }
 
 std::optional<Primitive> BeliefGraph::direct(StateId state, std::size_t goal) const {

@@ -12,9 +12,11 @@ namespace tenon::planner {
 /// the loss of one at its edge.
 struct ContactAttractor {
   int axis = 0;
+  int sign = 1;         ///< of the push along it
   Pose mean;            ///< of the belief after the push
   double spread = 0.0;  ///< along the axis after the push, m or rad
   double uncertainty_m2 = 0.0;
+  bool face = true;  ///< all particles touch there; else some of them slid off an edge
   /// Where a push must begin that would miss a small face from elsewhere; the coordinate along the
   /// axis does not count. Empty for a face that may be met anywhere.
   std::optional<Pose> via;

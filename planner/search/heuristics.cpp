@@ -8,8 +8,9 @@ namespace {
 
 double step_along(const Task& task, int axis) { return axis < 3 ? task.step_m : task.step_rad; }
 
-/// Steps along one axis; a contact takes at least one.
+/// Steps along one axis; a contact takes at least one. A guide suggests the whole way as one move.
 double steps_along(const Task& task, int axis, double way) {
+  if (task.guide_moves) return 1.0;
   constexpr double kRounding = 1e-6;
   return std::max(1.0, std::ceil(way / step_along(task, axis) - kRounding));
 }
@@ -25,7 +26,7 @@ double cost_of_via(const ContactAttractor& contact, const Task& task, Pose& at,
       aside[axis] = 0.0;
     } else {
       aside[axis] -= std::copysign(near, aside[axis]);
-      steps += std::abs(aside[axis]) / step_along(task, axis);
+      steps += task.guide_moves ? 1.0 : std::abs(aside[axis]) / step_along(task, axis);
     }
   }
   const Pose from = at;
@@ -36,11 +37,10 @@ double cost_of_via(const ContactAttractor& contact, const Task& task, Pose& at,
 
 double cost_of_contacts(const BeliefSummary& belief, const Guide& guide, const Task& task, Pose& at,
                         double& uncertainty_m2) {
-  const double together = std::sqrt(task.goal_uncertainty_m2);
   double cost = 0.0;
   for (const ContactAttractor& contact : guide.contacts) {
     const int axis = contact.axis;
-    if (belief.spread[axis] <= contact.spread + together) continue;
+    if (is_behind(belief, contact, task)) continue;
     if (contact.via) cost += cost_of_via(contact, task, at, uncertainty_m2);
     Vector6 along = Vector6::Zero();
     along[axis] = displacement_between(at, contact.mean)[axis];
@@ -63,14 +63,20 @@ double anchor_heuristic(const BeliefSummary& belief, const Task& task) {
          move_cost(task, belief.uncertainty_m2);
 }
 
+bool is_behind(const BeliefSummary& belief, const ContactAttractor& contact, const Task& task) {
+  const double together = std::sqrt(task.goal_uncertainty_m2);
+  return belief.spread[contact.axis] <= contact.spread + together;
+}
+
 double foliated_heuristic(const BeliefSummary& belief, const Guide& guide, const Task& task) {
   Pose at = belief.mean;
   double uncertainty_m2 = belief.uncertainty_m2;
   double cost = guide.contact_scale * cost_of_contacts(belief, guide, task, at, uncertainty_m2);
   for (const Pose& next : guide.goals) {
     const double way_m = displacement_between(at, next).head<3>().lpNorm<1>();
+    const double steps = task.guide_moves ? 1.0 : std::max(1.0, way_m / task.step_m);
     cost += task.distance_weight_per_m * distance(at, next, metric_of(task)) +
-            move_cost(task, uncertainty_m2) * std::max(1.0, way_m / task.step_m);
+            move_cost(task, uncertainty_m2) * steps;
     at = next;
   }
   return cost;

@@ -12,9 +12,13 @@ namespace tenon::planner {
 /// terms cancel against the edge's own, and the rest is a distance to a ball that holds every goal.
 [[nodiscard]] double anchor_heuristic(const BeliefSummary& belief, const Task& task);
 
-/// What is left to pay by single steps along the guide: w_d for the way, and w_m + w_u u for every
-/// step at the uncertainty that the last contact left. A contact is behind a belief whose particles
-/// stand together along its axis. Inadmissible.
+/// Whether a belief's particles stand together along a contact's axis: the contact is behind it.
+[[nodiscard]] bool is_behind(const BeliefSummary& belief, const ContactAttractor& contact,
+                             const Task& task);
+
+/// What is left to pay along the guide: w_d for the way, and w_m + w_u u for every step at the
+/// uncertainty that the last contact left, or for every move where the guides suggest moves. A
+/// contact is behind a belief whose particles stand together along its axis. Inadmissible.
 [[nodiscard]] double foliated_heuristic(const BeliefSummary& belief, const Guide& guide,
                                         const Task& task);
 

@@ -10,6 +10,7 @@
 #include "shared/config/yaml_value.h"
 #include "shared/motion/rules.h"
 #include "shared/task/inserted.h"
+#include "shared/task/own_moves.h"
 #include "shared/task/ring.h"
 
 namespace tenon {
@@ -129,7 +130,8 @@ void read_goal(const Value& value, Task& task) {
   const Map map(value, {"pose", "tolerance_m", "uncertainty_m2", "inserted"});
   task.goal = map.at("pose").pose();
   task.goal_tolerance_m = map.number("tolerance_m", positive_to(1.0));
-  task.goal_uncertainty_m2 = map.number("uncertainty_m2", positive_to(1.0));
+  task.goal_uncertainty_m2 = 0.0;  // where it is not said
+  map.optional_number("uncertainty_m2", positive_to(1.0), task.goal_uncertainty_m2);
 
   const auto region = map.find("inserted");
   if (!region) return;
@@ -296,13 +298,18 @@ Task load_task(const std::filesystem::path& name) {
   }
   map.optional_number("particle_sigmas", positive_to(5.0), task.particle_sigmas);
 
-  read_primitives(map.at("primitives"), task);
+  const auto primitives = map.find("primitives");
+  if (primitives) {
+    read_primitives(*primitives, task);
+  } else {
+    derive_moves(task);
+  }
   task.motion.speeds = read_speeds(map.at("speeds"));
   read_physics(map.at("physics"), task);
   read_contact(map.at("contact"), task);
   read_compliance(map.at("compliance"), task);
   if (const auto search = map.find("search")) read_search(*search, task);
-  check_time_for_a_step(map.at("primitives"), task);
+  check_time_for_a_step(primitives ? *primitives : map.at("contact"), task);
   return task;
 }
 

@@ -52,7 +52,7 @@ struct Task {
 
   Pose goal;
   double goal_tolerance_m = 2e-3;     ///< d_tol
-  double goal_uncertainty_m2 = 2e-6;  ///< u_tol
+  double goal_uncertainty_m2 = 2e-6;  ///< u_tol; 0: what the room at the goal allows, see planner/
   std::optional<BoxRegion> inserted;  ///< where every tool tip must end besides; see inserted.h
 
   // Primitives.
@@ -60,6 +60,9 @@ struct Task {
   double step_rad = 0.1;
   double long_step_m = 1.0;     ///< for the attractor search
   double direct_reach_m = 0.3;  ///< the mean-to-goal primitive exists within this distance
+  /// Besides those, moves that guides suggest: to where a push begins, the push, to a goal's
+  /// coordinates one after the other.
+  bool guide_moves = false;
 
   ParameterSet motion;
   Compliance compliance;
@@ -67,8 +70,8 @@ struct Task {
   double torque_limit_Nm = 2.0;
 
   // Search.
-  double w1 = 2.0;
-  double w2 = 2.0;
+  double w1 = 3.0;
+  double w2 = 3.0;
   double distance_weight_per_m = 5e3;        ///< w_d
   double uncertainty_weight_per_m2 = 2.5e6;  ///< w_u
   double move_weight = 0.0;                  ///< w_m, of every move; none in the paper

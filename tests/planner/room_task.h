@@ -16,6 +16,8 @@ inline WallRollout::World room() {
 inline Task room_task() {
   Task task;
   task.name = "room";
+  task.w1 = 2.0;
+  task.w2 = 2.0;
   task.coordinates = 0b11;
   task.compliance.compliant_axes = 0b11;
   Start start;

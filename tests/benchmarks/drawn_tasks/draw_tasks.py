@@ -114,7 +114,7 @@ class Draw:
         outer = (inner[0] - 0.03, inner[1] + 0.03, inner[2] - 0.03, inner[3] + 0.03)
         self.environment += plate_with_pocket(outer, inner, wall)
         self.environment += box("bottom", (outer[0], outer[2], -0.02), (outer[1], outer[3], 0.0))
-        self.above_bottom = 0.0
+        self.above_bottom = 0.001
         self.depth = wall
 
     def fixture(self):
@@ -127,7 +127,7 @@ class Draw:
         self.environment += box("wall_x", (x - 0.03, y - 0.03, 0.0), (x, y + long_y, wall))
         self.environment += box("wall_y", (x, y - 0.03, 0.0), (x + long_x, y, wall))
         self.environment += box("base", (x - 0.03, y - 0.03, -0.02), (x + long_x, y + long_y, 0.0))
-        self.above_bottom = 0.0
+        self.above_bottom = 0.001
         self.depth = wall
 
     def stepped_hole(self):
