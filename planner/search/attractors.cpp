@@ -102,20 +102,14 @@ class GuideSearch {
     if (stopped()) return;
     std::vector<Primitive> pushes = primitives_;
     std::erase_if(pushes, [&](const Primitive& push) { return contains(before, axis_of(push)); });
-    const BeliefSummary from = summarise(belief, task_);
-    const auto ends = succ_.successors(belief, pushes);
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (!ends[i]) continue;
-      const int axis = axis_of(pushes[i]);
-      const BeliefSummary end = summarise(*ends[i], task_);
-      const bool together = end.spread[axis] < task_.attractor_ratio * from.spread[axis];
-      if (!together || end.uncertainty_m2 >= from.uncertainty_m2) continue;
-      if (out_of_reach(from.mean, end.mean)) continue;
+    const double before_m2 = summarise(belief, task_).uncertainty_m2;
+    for (const Pushed& pushed : push_together(belief, pushes)) {
+      if (pushed.contact.uncertainty_m2 >= before_m2) continue;
       std::vector<ContactAttractor> contacts = before;
-      contacts.push_back({axis, sign_of(pushes[i]), end.mean, end.spread[axis], end.uncertainty_m2,
-                          on_face(*ends[i], pushes[i]), std::nullopt});
+      contacts.push_back(pushed.contact);
       keep(contacts);
-      if (end.uncertainty_m2 > task_.goal_uncertainty_m2) push_from(*ends[i], contacts);
+      if (pushed.contact.uncertainty_m2 > task_.goal_uncertainty_m2)
+        push_from(pushed.end, contacts);
     }
   }
 
@@ -195,6 +189,30 @@ class GuideSearch {
   }
 
  private:
+  struct Pushed {
+    ContactAttractor contact;  ///< with no via
+    Belief end;
+  };
+
+  /// Those of the pushes after which the particles stand together along their axis.
+  [[nodiscard]] std::vector<Pushed> push_together(const Belief& belief,
+                                                  const std::vector<Primitive>& pushes) {
+    const BeliefSummary from = summarise(belief, task_);
+    const auto ends = succ_.successors(belief, pushes);
+    std::vector<Pushed> together;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (!ends[i]) continue;
+      const int axis = axis_of(pushes[i]);
+      const BeliefSummary end = summarise(*ends[i], task_);
+      if (end.spread[axis] >= task_.attractor_ratio * from.spread[axis]) continue;
+      if (out_of_reach(from.mean, end.mean)) continue;
+      together.push_back({{axis, sign_of(pushes[i]), end.mean, end.spread[axis], end.uncertainty_m2,
+                           on_face(*ends[i], pushes[i]), std::nullopt},
+                          *ends[i]});
+    }
+    return together;
+  }
+
   [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
 
   /// How many of a guide's contacts are edges, which hold less well than faces. The lattice alone
@@ -248,6 +266,7 @@ class GuideSearch {
         if (!has(task_.coordinates, axis)) continue;
         place.position_m[axis] = box.min()[axis] + random.uniform() * box.sizes()[axis];
       }
+      if (out_of_reach(seed_.mean, place)) continue;
       Belief belief = spread_about(place, rollout);
       if (!belief.particles.empty()) return belief;
     }
@@ -280,16 +299,11 @@ class GuideSearch {
   /// Adds the contacts that each of these pushes makes.
   void push_once(const Belief& belief, const std::vector<Primitive>& pushes,
                  std::array<std::vector<ContactAttractor>, 6>& known) {
-    const BeliefSummary from = summarise(belief, task_);
-    const auto ends = succ_.successors(belief, pushes);
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (!ends[i]) continue;
-      const int axis = axis_of(pushes[i]);
-      const BeliefSummary end = summarise(*ends[i], task_);
-      if (end.spread[axis] >= task_.attractor_ratio * from.spread[axis]) continue;
-      auto& of_axis = known[static_cast<std::size_t>(axis)];
-      const ContactAttractor contact{axis, sign_of(pushes[i]),           end.mean, end.spread[axis],
-                                     0.0,  on_face(*ends[i], pushes[i]), from.mean};
+    const Pose via = summarise(belief, task_).mean;
+    for (Pushed& pushed : push_together(belief, pushes)) {
+      ContactAttractor& contact = pushed.contact;
+      contact.via = via;
+      auto& of_axis = known[static_cast<std::size_t>(contact.axis)];
       const auto same = find_known(contact, of_axis);
       if (same != of_axis.end()) {
         if (contact.spread < same->spread) *same = contact;
