@@ -19,7 +19,7 @@ constexpr std::uint32_t kRecoveries = 128;
 }  // namespace
 
 VirtualBus::VirtualBus(const Parameters& parameters)
-    : parameters_(parameters), noise_(parameters.seed) {}
+    : parameters_(parameters), noise_(stream_seed(parameters.seed, "bit_errors")) {}
 
 VirtualBus::~VirtualBus() = default;
 

@@ -31,10 +31,10 @@
 #include <optional>
 #include <vector>
 
+#include "shared/base/random.h"
 #include "shared/ports/can_bus.h"
 #include "sim/cell/bus/disturbance.h"
 #include "sim/cell/bus/frame_bits.h"
-#include "sim/cell/devices/normal_source.h"
 
 namespace tenon::sim {
 
@@ -154,7 +154,7 @@ class VirtualBus {
   std::vector<std::unique_ptr<End>> ends_;
   Disturbance* disturbance_ = nullptr;
   Observer observer_;
-  NormalSource noise_;
+  Random noise_;
   std::int64_t now_ns_ = 0;
   std::int64_t idle_ns_ = 0;  ///< since when, or from when on, the bus is free
   std::optional<Attempt> on_wire_;

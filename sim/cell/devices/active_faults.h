@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "sim/cell/devices/normal_source.h"
+#include "shared/base/random.h"
 #include "sim/cell/faults/fault.h"
 
 namespace tenon::sim {
@@ -18,7 +18,7 @@ class ActiveFaults {
     const auto duration_ns = static_cast<std::int64_t>(1e9 * fault.duration_s);
     const std::int64_t end_ns =
         duration_ns > 0 ? now_ns + duration_ns : std::numeric_limits<std::int64_t>::max();
-    active_.push_back({fault, end_ns, NormalSource(fault.seed)});
+    active_.push_back({fault, end_ns, Random(fault.seed)});
   }
 
   void advance(std::int64_t now_ns) {
@@ -47,7 +47,7 @@ class ActiveFaults {
   struct Active {
     Fault fault;
     std::int64_t end_ns = 0;
-    NormalSource source;
+    Random source;
   };
 
   std::vector<Active> active_;
@@ -55,7 +55,7 @@ class ActiveFaults {
 
 /// Whether a fault that is drawn once happens at all.
 [[nodiscard]] inline bool happens(const Fault& fault) {
-  return NormalSource(fault.seed).uniform() < fault.probability;
+  return Random(fault.seed).uniform() < fault.probability;
 }
 
 /// The error code that a fault of kind kEmergency carries.

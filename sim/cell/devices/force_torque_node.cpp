@@ -42,8 +42,8 @@ ForceTorqueNode::ForceTorqueNode(const ForceTorqueSensor& sensor, std::uint64_t 
              .receive_pdos = {},
              .transmit_pdos = pdos(sensor.node)},
             *this),
-      noise_(seed),
-      drift_(~seed),
+      noise_(stream_seed(seed, "sensor_noise")),
+      drift_(stream_seed(seed, "sensor_drift")),
       bias_(imperfections.bias) {
   add_objects();
 }
@@ -95,11 +95,11 @@ void ForceTorqueNode::drift(std::int64_t step_ns) {
   const double sqrt_s = std::sqrt(std::max(0.0, static_cast<double>(step_ns) * 1e-9));
   if (imperfections_.force_drift_N_sqrts > 0.0) {
     for (int i = 0; i < 3; ++i)
-      bias_[i] += imperfections_.force_drift_N_sqrts * sqrt_s * drift_.next();
+      bias_[i] += imperfections_.force_drift_N_sqrts * sqrt_s * drift_.normal();
   }
   if (imperfections_.torque_drift_Nm_sqrts > 0.0) {
     for (int i = 3; i < 6; ++i)
-      bias_[i] += imperfections_.torque_drift_Nm_sqrts * sqrt_s * drift_.next();
+      bias_[i] += imperfections_.torque_drift_Nm_sqrts * sqrt_s * drift_.normal();
   }
 }
 
@@ -128,7 +128,7 @@ void ForceTorqueNode::sample_axis(int axis, bool saturated) {
   const double range = force ? sensor_.force_range_N : sensor_.torque_range_Nm;
   const double sigma = force ? sensor_.force_noise_N : sensor_.torque_noise_Nm;
   const double per_count = force ? sensor_.force_per_count_N : sensor_.torque_per_count_Nm;
-  const double value = filtered_[axis] + bias_[axis] - tare_[axis] + sigma * noise_.next();
+  const double value = filtered_[axis] + bias_[axis] - tare_[axis] + sigma * noise_.normal();
   if (saturated || !(std::abs(value) < range)) status_ = kStatusSaturated;
   const double limited = saturated ? range : std::clamp(value, -range, range);
   const std::int64_t counts = std::llround(limited / per_count);

@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <string>
 
+#include "shared/base/random.h"
 #include "shared/cell/robot.h"
 #include "shared/math/pose.h"
 #include "sim/cell/canopen/slave_node.h"
 #include "sim/cell/devices/active_faults.h"
-#include "sim/cell/devices/normal_source.h"
 
 namespace tenon::sim {
 
@@ -62,8 +62,8 @@ class ForceTorqueNode final : private NodeApplication {
   ForceTorqueSensor sensor_;
   Imperfections imperfections_;
   SlaveNode node_;
-  NormalSource noise_;
-  NormalSource drift_;
+  Random noise_;
+  Random drift_;
   ActiveFaults faults_;
   Vector6 filtered_ = Vector6::Zero();
   Vector6 bias_ = Vector6::Zero();

@@ -24,7 +24,7 @@ BusFaults::BusFaults(std::span<const Fault> faults, std::uint8_t master_node, st
     : sender_(master_node) {
   for (const Fault& fault : faults) {
     if (!is_bus_fault(fault.kind)) continue;
-    Active active{fault, on_ns + nanoseconds(fault.time_s), 0, NormalSource(fault.seed), false};
+    Active active{fault, on_ns + nanoseconds(fault.time_s), 0, Random(fault.seed), false};
     active.end_ns = fault.duration_s > 0.0 ? active.begin_ns + nanoseconds(fault.duration_s)
                                            : std::numeric_limits<std::int64_t>::max();
     active_.push_back(active);

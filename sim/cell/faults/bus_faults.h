@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "shared/base/random.h"
 #include "sim/cell/bus/disturbance.h"
-#include "sim/cell/devices/normal_source.h"
 #include "sim/cell/faults/fault.h"
 #include "sim/cell/faults/frame_sender.h"
 
@@ -33,7 +33,7 @@ class BusFaults final : public Disturbance {
     Fault fault;
     std::int64_t begin_ns = 0;
     std::int64_t end_ns = 0;
-    NormalSource source;
+    Random source;
     bool spent = false;  ///< of those that strike once
   };
 

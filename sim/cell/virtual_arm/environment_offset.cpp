@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "shared/base/error.h"
+#include "shared/base/random.h"
 #include "shared/base/text.h"
-#include "sim/cell/devices/normal_source.h"
 
 namespace tenon::sim {
 namespace {
@@ -18,11 +18,11 @@ namespace {
 }  // namespace
 
 Vector6 draw_offset(const Start& start, CoordinateMask coordinates, std::uint64_t seed) {
-  NormalSource source(seed);
+  Random source(stream_seed(seed, "environment_offset"));
   Vector6 offset = Vector6::Zero();
   for (int axis = 0; axis < 6; ++axis) {
     // Every axis takes a number, so that an axis more leaves the draws of the others alone.
-    const double value = source.next();
+    const double value = source.normal();
     if (has(coordinates, axis)) offset[axis] = start.sigma[axis] * value;
   }
   return offset;

@@ -4,36 +4,25 @@
 #include <string_view>
 
 #include "shared/base/error.h"
-#include "shared/base/fnv.h"
-#include "sim/cell/devices/normal_source.h"
+#include "shared/base/random.h"
 
 namespace tenon::sim {
 namespace {
 
 constexpr double kSigmasMax = 3.0;
 
-/// Of the name, so that a quantity's stream depends on nothing else.
-std::uint64_t seed_of(std::string_view quantity, std::uint64_t seed) {
-  std::uint64_t hash = fnv1a_64(quantity);
-  // Neighbouring seeds must not give neighbouring streams (the finaliser of SplitMix64).
-  hash ^= seed;
-  hash = (hash ^ hash >> 30) * 0xBF58476D1CE4E5B9;
-  hash = (hash ^ hash >> 27) * 0x94D049BB133111EB;
-  return hash ^ hash >> 31;
-}
-
-/// The draws of one quantity.
+/// The draws of one quantity. Of its name, so that its stream depends on nothing else.
 class Stream {
  public:
   Stream(std::string_view quantity, const Spread& spread, std::uint64_t seed)
-      : spread_(spread), source_(seed_of(quantity, seed)) {}
+      : spread_(spread), source_(stream_seed(seed, quantity)) {}
 
   [[nodiscard]] double next() {
     if (spread_.sigma == 0.0) {
       return spread_.low + source_.uniform() * (spread_.high - spread_.low);
     }
-    double value = source_.next();
-    while (std::abs(value) > kSigmasMax) value = source_.next();
+    double value = source_.normal();
+    while (std::abs(value) > kSigmasMax) value = source_.normal();
     return spread_.sigma * value;
   }
   [[nodiscard]] Vector3 next_vector() {
@@ -44,7 +33,7 @@ class Stream {
 
  private:
   Spread spread_;
-  NormalSource source_;
+  Random source_;
 };
 
 /// A round thing stays round.
