@@ -103,6 +103,74 @@ TEST(DeviceFaultsTest, ABrakeThatFailedIsOnByItsOutputAndHoldsNothing) {
   EXPECT_TRUE(bench.demand.brake);
 }
 
+/// An enabled drive that stops by 6085h, and then closes its brake (605Ah = 2, 6007h = 3), watching
+/// node 127 for 100 ms.
+void enable_watching(DriveBench& bench) {
+  bench.configure();
+  EXPECT_EQ(bench.write_u16({0x605A}, 2), 0U);
+  EXPECT_EQ(bench.write_u16({0x6007}, 3), 0U);
+  EXPECT_EQ(bench.write_u32({0x1016, 1}, 0x007F0064), 0U);
+  bench.enable();
+  bench.tell(CanopenClient::heartbeat(127));
+}
+
+TEST(DeviceFaultsTest, ADriveThatKeepsPowerStaysInItsQuickStopOnceTheMasterIsLost) {
+  for (const bool unkind : {false, true}) {
+    DriveBench bench;
+    if (unkind) bench.drive.inject({.kind = FaultKind::kKeepsPower});
+    enable_watching(bench);
+    bench.pass(300);
+    EXPECT_EQ(bench.drive.state(),
+              unkind ? DriveState::kQuickStopActive : DriveState::kSwitchOnDisabled);
+    EXPECT_EQ(bench.demand.powered, unkind);
+    EXPECT_EQ(bench.demand.brake, !unkind);
+  }
+}
+
+// The output closes, 10 ms later the drive switches off, 40 ms after that the brake holds.
+TEST(DeviceFaultsTest, ABrakeThatIsSlowerThanItsDriveKnowsLeavesTheAxisFree) {
+  DriveBench bench;
+  bench.drive.inject({.kind = FaultKind::kSlowBrake, .value = 0.05});
+  enable_watching(bench);
+  bench.control(0x02);
+  bench.pass(9);
+  EXPECT_TRUE(bench.demand.powered);
+  bench.pass(3);
+  EXPECT_FALSE(bench.demand.powered);
+  EXPECT_FALSE(bench.demand.brake);
+  bench.pass(36);
+  EXPECT_FALSE(bench.demand.brake);
+  bench.pass(4);
+  EXPECT_TRUE(bench.demand.brake);
+}
+
+TEST(DeviceFaultsTest, ADriveByTheBookHoldsItsAxisUntilItsSlowBrakeDoes) {
+  DriveBench bench({.node = 5, .brake_engage_s = 0.05});
+  enable_watching(bench);
+  bench.control(0x02);
+  for (int i = 0; i < 200; ++i) {
+    bench.pass(0.5);
+    EXPECT_TRUE(bench.demand.powered || bench.demand.brake) << i;
+  }
+  EXPECT_FALSE(bench.demand.powered);
+}
+
+TEST(DeviceFaultsTest, ADriveThatResumesLeavesAQuickStopForTheLastEnableWordOnce) {
+  DriveBench bench;
+  EXPECT_EQ(bench.write_u8({0x60C2, 1}, 2), 0U);
+  bench.drive.inject({.kind = FaultKind::kResumesStop});
+  enable_watching(bench);
+  bench.run_fast();
+  bench.control(0x02);
+  bench.pass(1);
+  EXPECT_EQ(bench.drive.state(), DriveState::kQuickStopActive);
+  bench.pass(2);
+  EXPECT_EQ(bench.drive.state(), DriveState::kOperationEnabled);
+  bench.control(0x02);
+  bench.pass(200);
+  EXPECT_EQ(bench.drive.state(), DriveState::kSwitchOnDisabled) << "the word is used up";
+}
+
 TEST(DeviceFaultsTest, ALossOfTorqueLeavesItsPart) {
   DriveBench bench;
   bench.configure();

@@ -35,6 +35,7 @@ TEST(FaultSpec, EveryKeyIsRead) {
   EXPECT_EQ(parse_fault("encoder-jump:node=1,jump_m=-0.002").value, -0.002);
   EXPECT_EQ(parse_fault("encoder-jump:node=1,jump_rad=0.1").value, 0.1);
   EXPECT_EQ(parse_fault("torque-loss:node=2,share=0").value, 0.0);
+  EXPECT_EQ(parse_fault("slow-brake:node=2,brake_s=0.05").value, 0.05);
 }
 
 std::string refusal(const std::string& text) {
@@ -76,7 +77,7 @@ TEST(FaultSpec, WhatIsWrongIsSaidInOneLineWithItsBound) {
 
 TEST(FaultSpec, HelpNamesEveryKindInALineAndItsExamplesAreGood) {
   const std::string help = fault_help();
-  for (int kind = 0; kind <= static_cast<int>(FaultKind::kTorqueLoss); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(FaultKind::kResumesStop); ++kind) {
     const std::string name = to_string(static_cast<FaultKind>(kind));
     const std::size_t at = help.find("\n" + name + " ");
     ASSERT_NE(at, std::string::npos) << name;

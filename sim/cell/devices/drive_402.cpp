@@ -85,7 +85,9 @@ void Drive402::on_connection_lost() {
   if (how == kConnectionDisable) return command(DriveCommand::kDisableVoltage);
   // Quick stop. Nobody is left to command the drive: at standstill the brake takes over.
   if (state_ == State::kFaultReaction) return;
-  apply({State::kQuickStopActive, DriveAction::kQuickRamp, State::kSwitchOnDisabled});
+  std::optional<State> then = State::kSwitchOnDisabled;
+  if (faults_.find(FaultKind::kKeepsPower) != nullptr) then.reset();
+  apply({State::kQuickStopActive, DriveAction::kQuickRamp, then});
 }
 
 std::uint32_t Drive402::on_mode(std::int64_t mode) {
@@ -98,6 +100,7 @@ std::uint32_t Drive402::on_mode(std::int64_t mode) {
 std::uint32_t Drive402::on_controlword(std::uint16_t word) {
   const bool reset_edge = (word & ~last_controlword_ & canopen::kControlFaultReset) != 0;
   last_controlword_ = word;
+  if (decode_controlword(word) == DriveCommand::kEnableOperation) enable_buffered_ = true;
   if (state_ != State::kFault) {
     command(decode_controlword(word));
     update_halt();
@@ -146,7 +149,11 @@ void Drive402::act(DriveAction action, bool brake_afterwards) {
 void Drive402::enter_state(State next) {
   if (state_ == State::kFault || next == State::kNotReady) objects_.error_code.value = 0;
   if (next != State::kOperationEnabled) halted_ = false;
-  if (next != state_) outside_window_ns_ = 0;
+  if (next != state_) {
+    outside_window_ns_ = 0;
+    stopped_ns_.reset();
+    if (next == State::kQuickStopActive) stopped_ns_ = now_ns_;
+  }
   state_ = next;
   update_statusword();
 }
@@ -203,6 +210,16 @@ void Drive402::update_statusword() {
   objects_.statusword.value = word;
 }
 
+/// A fault: what a standard drive has forgotten with its quick stop, this one still has.
+void Drive402::resume_stop() {
+  if (!stopped_ns_ || !enable_buffered_ || faults_.find(FaultKind::kResumesStop) == nullptr) return;
+  if (now_ns_ - *stopped_ns_ < objects_.interpolation_period_ns()) return;
+  enable_buffered_ = false;
+  if (motion_.moving_freely()) {
+    apply({State::kOperationEnabled, DriveAction::kResume, {}});
+  }
+}
+
 // -- Axis ---------------------------------------------------------------------------------------
 
 Drive402::Demand Drive402::demand(std::int64_t step_ns) {
@@ -238,7 +255,9 @@ void Drive402::measured(const Measurement& measurement, std::int64_t step_ns) {
   measurement_.position_counts += encoder_jump_counts_;
   watch_power_stage(step_ns);
   watch_following_error(step_ns);
-  if (motion_.advance(step_ns) && afterwards_) {
+  const Fault* slow_brake = faults_.find(FaultKind::kSlowBrake);
+  const bool done = motion_.advance(step_ns, slow_brake == nullptr ? 0.0 : slow_brake->value);
+  if (done && afterwards_) {
     const State next = *afterwards_;
     afterwards_.reset();
     enter_state(next);
@@ -302,6 +321,7 @@ void Drive402::advance(std::int64_t now_ns) {
   node_.set_silent(faults_.find(FaultKind::kSilentNode) != nullptr);
   if (state_ == State::kNotReady && now_ns >= ready_ns_) enter_state(State::kSwitchOnDisabled);
   node_.advance(now_ns);
+  resume_stop();
 }
 
 void Drive402::inject(const Fault& fault) {

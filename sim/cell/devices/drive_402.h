@@ -56,8 +56,8 @@ class Drive402 final : private NodeApplication {
   void set_supply(double volts);
 
   /// Begins a fault now, that is at the time of the last advance(): node reset, silent node,
-  /// emergency, encoder jump, brake failure, torque loss, frozen drive. Whether it happens is drawn
-  /// once. Others are not a drive's, and ignored.
+  /// emergency, encoder jump, brake failure, torque loss, frozen drive, and the ways in which a
+  /// drive may be unkind. Whether it happens is drawn once. Others are not a drive's, and ignored.
   void inject(const Fault& fault);
 
   [[nodiscard]] State state() const { return state_; }
@@ -82,6 +82,7 @@ class Drive402 final : private NodeApplication {
   void enter_state(State next);
   void fault(std::uint16_t code);
   void update_halt();
+  void resume_stop();
   void watch_following_error(std::int64_t step_ns);
   void watch_power_stage(std::int64_t step_ns);
   void update_statusword();
@@ -99,7 +100,9 @@ class Drive402 final : private NodeApplication {
   std::int64_t now_ns_ = 0;
   std::int64_t ready_ns_ = 0;
   std::uint16_t last_controlword_ = 0;
-  std::optional<State> afterwards_;  ///< entered when the motion is done
+  bool enable_buffered_ = false;            ///< the last enable word has not been found yet
+  std::optional<std::int64_t> stopped_ns_;  ///< when the quick stop under way began
+  std::optional<State> afterwards_;         ///< entered when the motion is done
   bool halted_ = false;
   Measurement measurement_;              ///< as the encoder tells it
   double encoder_jump_counts_ = 0.0;     ///< of a fault

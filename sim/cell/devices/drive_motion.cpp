@@ -93,8 +93,9 @@ void DriveMotion::follow(std::int64_t step_ns) {
       (position_counts_ - before_counts) * kNanosecondsPerSecond / static_cast<double>(step_ns);
 }
 
-bool DriveMotion::advance(std::int64_t step_ns) {
-  brake_.advance(step_ns);
+bool DriveMotion::advance(std::int64_t step_ns, double brake_s) {
+  const auto brake_ns = static_cast<std::int64_t>(brake_s * kNanosecondsPerSecond);
+  brake_.advance(step_ns, std::max<std::int64_t>(0, brake_ns - brake_.engage_ns()));
   switch (phase_) {
     case Phase::kOff:
     case Phase::kFollowing:
@@ -110,7 +111,7 @@ bool DriveMotion::advance(std::int64_t step_ns) {
       if (brake_at_standstill_) brake_.set(true);
       return !brake_at_standstill_;
     case Phase::kEngaging:
-      if (!brake_.holds()) return false;
+      if (!brake_.should_hold()) return false;
       power_off();
       return true;
   }

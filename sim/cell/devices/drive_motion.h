@@ -44,7 +44,8 @@ class DriveMotion {
   /// Moves the demand on by `step_ns`.
   void demand(std::int64_t step_ns);
   /// After the plant's step. @return what power_on or ramp_down began is done
-  [[nodiscard]] bool advance(std::int64_t step_ns);
+  /// @param brake_s how long the brake really takes to hold; less than the drive knows: as it knows
+  [[nodiscard]] bool advance(std::int64_t step_ns, double brake_s = 0.0);
 
   [[nodiscard]] Phase phase() const { return phase_; }
   /// The axis is under power and not in the brake.

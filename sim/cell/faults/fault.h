@@ -26,6 +26,10 @@ enum class FaultKind : std::uint8_t {
   kSaturatedForce = 14,  ///< the sensor reads its range
   kTorqueLoss = 15,      ///< the joint's drive gives `value` times its effort, 0 <= value < 1
   kFrozenDrive = 16,     ///< the drive stands still under power, and says that all is well
+  // In a drive that does less than its standard says.
+  kKeepsPower = 17,   ///< it stays in quick stop active, under power, once its master is lost
+  kSlowBrake = 18,    ///< the brake holds `value` seconds after its output; the drive waits less
+  kResumesStop = 19,  ///< a quick stop is over as soon as an enable word from before it is found
 };
 
 /// Who carries it out.
@@ -54,6 +58,9 @@ enum class FaultTarget : std::uint8_t {
     case FaultKind::kBrakeFailure:
     case FaultKind::kTorqueLoss:
     case FaultKind::kFrozenDrive:
+    case FaultKind::kKeepsPower:
+    case FaultKind::kSlowBrake:
+    case FaultKind::kResumesStop:
       return FaultTarget::kDrive;
     case FaultKind::kStaleForce:
     case FaultKind::kTornForce:

@@ -22,7 +22,7 @@ struct Kind {
   const char* example = "";
 };
 
-constexpr std::array<Kind, 17> kKinds{{
+constexpr std::array<Kind, 20> kKinds{{
     {FaultKind::kDrop, "drop", false, nullptr, 0, 0, "a frame is lost for all receivers",
      "drop:node=3,time_s=2,duration_s=0.5,probability=0.1,seed=7"},
     {FaultKind::kDelay, "delay", false, "delay_s", 1e-6, 10.0, "a frame arrives delay_s late",
@@ -63,6 +63,15 @@ constexpr std::array<Kind, 17> kKinds{{
     {FaultKind::kFrozenDrive, "frozen-drive", true, nullptr, 0, 0,
      "the drive stands still under power and says that all is well",
      "frozen-drive:node=1,time_s=3,duration_s=1"},
+    {FaultKind::kKeepsPower, "keeps-power", true, nullptr, 0, 0,
+     "once its master is lost, the drive stays in quick stop active, under power",
+     "keeps-power:node=3"},
+    {FaultKind::kSlowBrake, "slow-brake", true, "brake_s", 0.0, 10.0,
+     "the brake holds that long after its output; the drive switches off as if it were quick",
+     "slow-brake:node=3,brake_s=0.05"},
+    {FaultKind::kResumesStop, "resumes-stop", true, nullptr, 0, 0,
+     "the drive leaves a quick stop for the last enable word from before it, once each",
+     "resumes-stop:node=1"},
 }};
 
 const Kind& kind_of(FaultKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }

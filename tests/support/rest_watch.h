@@ -1,0 +1,41 @@
+#pragma once
+// What a stop left behind, by the virtual arm's truth: whether power is off and the brakes are on,
+// and how far a joint moved after its brake's output had closed.
+
+#include <string>
+#include <vector>
+
+#include "shared/cell/robot.h"
+#include "sim/cell/virtual_arm/truth.h"
+
+namespace tenon::tests {
+
+class RestWatch {
+ public:
+  /// Keeps a reference.
+  explicit RestWatch(const Robot& robot) : robot_(robot) {}
+
+  /// Again and again, until all rests.
+  void look(const sim::Truth& truth);
+
+  /// No drive of the last truth has power, all brakes are on.
+  [[nodiscard]] bool off() const;
+  /// No joint has moved further than a brake's play (0.5 mm, 2 mrad) since its brake closed.
+  [[nodiscard]] bool held() const;
+  /// What is not as it should be, of each drive; empty: all is.
+  [[nodiscard]] std::string complaints() const;
+
+ private:
+  struct Axis {
+    double closed_at = 0.0;  ///< position when the output closed
+    double slip = 0.0;       ///< since then, at most
+    bool closed = false;
+    bool powered = true;
+    std::string state;
+  };
+
+  const Robot& robot_;
+  std::vector<Axis> axes_;
+};
+
+}  // namespace tenon::tests
