@@ -24,6 +24,7 @@
 #include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
 #include "sim/cell/devices/robot_devices.h"
+#include "sim/cell/faults/fault_phases.h"
 #include "sim/cell/faults/fault_spec.h"
 #include "sim/cell/faults/faulty_bus.h"
 #include "sim/cell/virtual_arm/environment_offset.h"
@@ -133,6 +134,8 @@ int simulate(const CommandLine& line) {
   }
   for (const std::string& fault : line.faults) options.faults.push_back(sim::parse_fault(fault));
   if (!line.json.empty()) check_writable(line.json);
+  sim::FaultPhases phases;
+  options.phases = &phases;
   sim::VirtualCell cell(cell_file, task, options);
 
   const std::unique_ptr<CanBus> bus = hw::open_bus(line.can, cell_file.robot.bitrate_bps);
@@ -143,7 +146,8 @@ int simulate(const CommandLine& line) {
   raise_priority();
   stop_on_signals(stop_requested);
   announce(line, *bus);
-  sim::FaultyBus faulty_bus(*bus, options.faults, cell_file.robot.master_node, monotonic_now_ns());
+  sim::FaultyBus faulty_bus(*bus, options.faults, cell_file.robot.master_node, monotonic_now_ns(),
+                            &phases);
   const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr);
 
   sim::Truth truth = cell.truth();

@@ -66,14 +66,19 @@ void CycleRunner::publish(std::int64_t wakeup_late_ns, std::int64_t compute_ns) 
 }
 
 void CycleRunner::run(const std::atomic<bool>& stop) noexcept {
+  MonotonicClock clock;
+  run(stop, clock);
+}
+
+void CycleRunner::run(const std::atomic<bool>& stop, Clock& clock) noexcept {
   const auto deadline_ns =
       static_cast<std::int64_t>(parameters_.feedback_deadline * static_cast<double>(cycle_ns_));
   const auto late_sync_ns = static_cast<std::int64_t>(kLateSync * static_cast<double>(cycle_ns_));
-  std::int64_t due_ns = monotonic_now_ns() + cycle_ns_;
+  std::int64_t due_ns = clock.now_ns() + cycle_ns_;
   std::int64_t last_awake_ns = due_ns;
   while (!task_.finished()) {
-    wait_until_ns(due_ns);
-    const std::int64_t awake_ns = monotonic_now_ns();
+    clock.wait_until_ns(due_ns);
+    const std::int64_t awake_ns = clock.now_ns();
     if (stop.load(std::memory_order_relaxed)) task_.request_stop();
     if (awake_ns - last_awake_ns > late_sync_ns) task_.distrust_samples();
     last_awake_ns = awake_ns;
@@ -83,17 +88,17 @@ void CycleRunner::run(const std::atomic<bool>& stop) noexcept {
     bool complete = arm_.receive(now_ns, feedback_);
     while (!complete && now_ns < awake_ns + deadline_ns) {
       arm_.wait(awake_ns + deadline_ns - now_ns);
-      now_ns = monotonic_now_ns();
+      now_ns = clock.now_ns();
       complete = arm_.receive(now_ns, feedback_);
     }
     count_answers(complete);
 
     decide(now_ns);
-    const std::int64_t done_ns = monotonic_now_ns();
+    const std::int64_t done_ns = clock.now_ns();
     statistics_.wakeup.add(awake_ns - due_ns);
     statistics_.compute.add(done_ns - now_ns);
     publish(awake_ns - due_ns, done_ns - now_ns);
-    due_ns = next_due(due_ns, monotonic_now_ns());
+    due_ns = next_due(due_ns, clock.now_ns());
   }
 }
 

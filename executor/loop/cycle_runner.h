@@ -13,6 +13,7 @@
 #include "executor/record/cycle_sink.h"
 #include "executor/record/histogram.h"
 #include "shared/ports/arm.h"
+#include "shared/ports/clock.h"
 
 namespace tenon::executor {
 
@@ -50,8 +51,10 @@ class CycleRunner {
     return finish(now_ns);
   }
 
-  /// Runs to the end on the clock. @param stop set by anyone to end the run in good order
+  /// Runs to the end on the system's clock. @param stop set by anyone to end the run in good order
   void run(const std::atomic<bool>& stop) noexcept;
+  /// The same on another clock; the arm's wait() must go by it, too.
+  void run(const std::atomic<bool>& stop, Clock& clock) noexcept;
 
   [[nodiscard]] const Statistics& statistics() const noexcept { return statistics_; }
   [[nodiscard]] const BlackBox& black_box() const noexcept { return black_box_; }

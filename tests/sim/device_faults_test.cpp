@@ -231,6 +231,39 @@ TEST(DeviceFaultsTest, AStaleSensorRepeatsItsSampleCounterIncluded) {
   EXPECT_EQ(bench.signed_value({0x6401, 1}), 200);
 }
 
+TEST(DeviceFaultsTest, AFrozenSensorsCounterRunsOn) {
+  SensorBench bench;
+  bench.start();
+  bench.wrench[0] = 1.0;
+  bench.pass(1);
+  EXPECT_EQ(counters(bench), std::pair(1, 1));
+  bench.sensor.inject({.kind = FaultKind::kFrozenForce, .duration_s = 0.01});
+  bench.wrench[0] = 2.0;
+  bench.pass(5);
+  EXPECT_EQ(counters(bench), std::pair(2, 2));
+  EXPECT_EQ(bench.signed_value({0x6401, 1}), 100);
+  bench.pass(6);
+  EXPECT_EQ(counters(bench), std::pair(3, 3));
+  EXPECT_EQ(bench.signed_value({0x6401, 1}), 200);
+}
+
+TEST(DeviceFaultsTest, AForgedForceIsAddedAlongXAndADriftGrows) {
+  SensorBench bench;
+  bench.start();
+  bench.sensor.inject({.kind = FaultKind::kForgedForce, .duration_s = 0.01, .value = 80.0});
+  bench.pass(5);
+  bench.sync();
+  EXPECT_EQ(bench.signed_value({0x6401, 1}), 8000);
+  EXPECT_EQ(bench.signed_value({0x6401, 2}), 0);
+  bench.pass(6);
+  bench.sensor.inject({.kind = FaultKind::kDriftingForce, .value = -20.0});
+  bench.sync();
+  EXPECT_EQ(bench.signed_value({0x6401, 1}), 0);
+  bench.pass(100);
+  bench.sync();
+  EXPECT_EQ(bench.signed_value({0x6401, 1}), -200);
+}
+
 TEST(DeviceFaultsTest, ATornWrenchHasHalvesOfDifferentSamples) {
   SensorBench bench;
   bench.start();

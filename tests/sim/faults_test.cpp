@@ -38,6 +38,17 @@ TEST(FaultSpec, EveryKeyIsRead) {
   EXPECT_EQ(parse_fault("slow-brake:node=2,brake_s=0.05").value, 0.05);
 }
 
+TEST(FaultSpec, AFaultMayWaitForAPhaseAndMeanSomeFramesAlone) {
+  EXPECT_FALSE(parse_fault("drop:node=3").at.has_value());
+  EXPECT_EQ(parse_fault("brake-failure:node=3,at=sliding").at, FaultPhase::kSliding);
+  EXPECT_EQ(parse_fault("drop:at=stopping,time_s=0.1").at, FaultPhase::kStopping);
+  EXPECT_EQ(parse_fault("drop:node=3").frames, FrameKind::kAny);
+  EXPECT_EQ(parse_fault("drop:id=rpdo").frames, FrameKind::kSetpoints);
+  const Fault one = parse_fault("delay:delay_s=0.001,id=0x191");
+  EXPECT_EQ(one.frames, FrameKind::kOne);
+  EXPECT_EQ(one.cob_id, 0x191U);
+}
+
 std::string refusal(const std::string& text) {
   return tests::refusal([&] { (void)parse_fault(text); });
 }
@@ -66,6 +77,11 @@ TEST(FaultSpec, WhatIsWrongIsSaidInOneLineWithItsBound) {
       {"emergency:node=1", "code is missing"},
       {"emergency:node=1,code=70000", "code = '70000', must be a whole number in [1, 65535]"},
       {"torque-loss:node=1,share=1", "share"},
+      {"drop:at=home", "at = 'home', must be one of enabling, free, sliding, contact, stopping"},
+      {"drop:id=tpdo",
+       "id = 'tpdo', must be one of any, sync, heartbeat, emcy, answers, rpdo, sdo"},
+      {"drop:id=0x800", "must be a whole number in [0, 2047]"},
+      {"bus-off:id=rpdo", "no key 'id'"},
   };
   for (const auto& [text, expected] : wrong) {
     const std::string message = refusal(text);
@@ -77,7 +93,7 @@ TEST(FaultSpec, WhatIsWrongIsSaidInOneLineWithItsBound) {
 
 TEST(FaultSpec, HelpNamesEveryKindInALineAndItsExamplesAreGood) {
   const std::string help = fault_help();
-  for (int kind = 0; kind <= static_cast<int>(FaultKind::kResumesStop); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(FaultKind::kForgedForce); ++kind) {
     const std::string name = to_string(static_cast<FaultKind>(kind));
     const std::size_t at = help.find("\n" + name + " ");
     ASSERT_NE(at, std::string::npos) << name;
@@ -117,6 +133,27 @@ TEST(FrameSender, OverhearsWhichIdentifierAMasterGivesToANode) {
   EXPECT_EQ(sender.node_of(frame_of(0x192)), 0x12);
 }
 
+TEST(FrameSender, KnowsWhatAFrameIsByWhatItHasOverheard) {
+  FrameSender sender(127);
+  EXPECT_EQ(sender.kind_of(frame_of(0x080)), FrameKind::kSync);
+  EXPECT_EQ(sender.kind_of(frame_of(0x083)), FrameKind::kEmergency);
+  EXPECT_EQ(sender.kind_of(frame_of(0x183)), FrameKind::kAnswers);
+  EXPECT_EQ(sender.kind_of(frame_of(0x203)), FrameKind::kSetpoints);
+  EXPECT_EQ(sender.kind_of(frame_of(0x583)), FrameKind::kSdo);
+  EXPECT_EQ(sender.kind_of(frame_of(0x603)), FrameKind::kSdo);
+  EXPECT_EQ(sender.kind_of(frame_of(0x77F)), FrameKind::kHeartbeat);
+  EXPECT_EQ(sender.kind_of(frame_of(0x000)), FrameKind::kAny);
+  EXPECT_TRUE(sender.is_for(frame_of(0x203), 3));
+  // Nodes 3 and 4 both take their targets from 203h (1400h:1), and 3 answers as 291h.
+  sender.overhear(frame_of(0x603, {0x23, 0x00, 0x14, 0x01, 0x03, 0x02, 0x00, 0x00}));
+  sender.overhear(frame_of(0x604, {0x23, 0x00, 0x14, 0x01, 0x03, 0x02, 0x00, 0x00}));
+  sender.overhear(frame_of(0x603, {0x23, 0x00, 0x18, 0x01, 0x13, 0x02, 0x00, 0x00}));
+  EXPECT_TRUE(sender.is_for(frame_of(0x203), 3));
+  EXPECT_TRUE(sender.is_for(frame_of(0x203), 4));
+  EXPECT_FALSE(sender.is_for(frame_of(0x203), 5));
+  EXPECT_EQ(sender.kind_of(frame_of(0x213)), FrameKind::kAnswers);
+}
+
 // --- the decorator -------------------------------------------------------------------------------
 
 /// The devices' side behind faults, and what a master on the wire sees.
@@ -142,6 +179,33 @@ struct Decorated {
 };
 
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
+
+TEST(FaultyBus, MayLoseSomeFramesOfANodeAlone) {
+  Decorated line({"drop:node=3,duration_s=1,id=heartbeat", "drop:node=4,duration_s=1,id=rpdo",
+                  "drop:duration_s=1,id=0x305"});
+  for (const std::uint32_t id : {0x703u, 0x183u, 0x704u}) {
+    EXPECT_EQ(line.faulty.send(frame_of(id)), SendResult::kSent);
+  }
+  for (const std::uint32_t id : {0x203u, 0x204u, 0x305u, 0x306u}) {
+    EXPECT_EQ(line.master.send(frame_of(id)), SendResult::kSent);
+  }
+  EXPECT_EQ(Decorated::drain(line.master), (std::vector{frame_of(0x183), frame_of(0x704)}));
+  EXPECT_EQ(Decorated::drain(line.faulty), (std::vector{frame_of(0x203), frame_of(0x306)}));
+}
+
+TEST(BusFaultsTest, OneThatWaitsForAPhaseBeginsSoLongAfterItAndLastsFromThen) {
+  FaultPhases phases;
+  const std::vector<Fault> faults = {
+      parse_fault("interface-down:at=free,time_s=0.1,duration_s=0.2")};
+  const BusFaults bus(faults, 127, 0, &phases);
+  EXPECT_FALSE(bus.down(500 * kMillisecond_ns));
+  phases.begin(FaultPhase::kFree, 1000 * kMillisecond_ns);
+  phases.begin(FaultPhase::kFree, 2000 * kMillisecond_ns);  // not for the first time
+  EXPECT_FALSE(bus.down(1099 * kMillisecond_ns));
+  EXPECT_TRUE(bus.down(1100 * kMillisecond_ns));
+  EXPECT_TRUE(bus.down(1299 * kMillisecond_ns));
+  EXPECT_FALSE(bus.down(1300 * kMillisecond_ns));
+}
 
 TEST(FaultyBus, WithoutFaultsFramesPassBothWays) {
   Decorated line({});

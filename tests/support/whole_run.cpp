@@ -1,8 +1,10 @@
 #include "tests/support/whole_run.h"
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "hw/arm/describe_fault.h"
 
@@ -10,6 +12,33 @@ namespace tenon::tests {
 namespace {
 
 constexpr std::int64_t kRunMax_cycles = 500'000;
+
+/// An arm whose setpoints somebody tampers with.
+class TamperedArm final : public Arm {
+ public:
+  TamperedArm(Arm& arm, std::function<void(JointVector&)> tamper)
+      : arm_(arm), tamper_(std::move(tamper)) {}
+
+  [[nodiscard]] std::size_t joint_count() const noexcept override { return arm_.joint_count(); }
+  [[nodiscard]] bool prepare(std::int64_t now_ns) override { return arm_.prepare(now_ns); }
+  void start_cycle(std::int64_t now_ns) noexcept override { arm_.start_cycle(now_ns); }
+  [[nodiscard]] bool receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept override {
+    return arm_.receive(now_ns, feedback);
+  }
+  void command(std::int64_t now_ns, ArmRequest request,
+               const JointVector& position) noexcept override {
+    JointVector tampered = position;
+    tamper_(tampered);
+    arm_.command(now_ns, request, tampered);
+  }
+  void wait(std::int64_t at_most_ns) noexcept override { arm_.wait(at_most_ns); }
+  [[nodiscard]] ArmState state() const noexcept override { return arm_.state(); }
+  [[nodiscard]] ArmFault fault() const noexcept override { return arm_.fault(); }
+
+ private:
+  Arm& arm_;
+  std::function<void(JointVector&)> tamper_;
+};
 
 sim::VirtualCell::Options world_of(const WholeRun::Options& options) {
   sim::VirtualCell::Options world;
@@ -34,19 +63,38 @@ WholeRun::WholeRun(const Cell& cell, const Task& task, const Plan& plan, const O
                                     .bit_error_rate = options.bit_error_rate,
                                     .seed = options.seed},
         robot.master_node);
-    bus_faults_ = std::make_unique<sim::BusFaults>(options.faults, robot.master_node);
+    bus_faults_ = std::make_unique<sim::BusFaults>(options.faults, robot.master_node, 0, &phases_);
     if (!options.faults.empty()) bus().set_disturbance(bus_faults_.get());
   }
   sim::Link* link = options.link != nullptr ? options.link : link_.get();
   const executor::CycleRunner::Parameters loop;
-  arm_ = std::make_unique<hw::CanopenArm>(robot, link->master());
-  controller_ = std::make_unique<executor::Controller>(cell, plan, options.controller);
-  runner_ = std::make_unique<executor::CycleRunner>(*arm_, *controller_, sink, loop);
-  virtual_cell_ = std::make_unique<sim::VirtualCell>(cell, task, world_of(options));
+  master_ = std::make_unique<sim::LockstepBus>(link->master());
+  arm_ = std::make_unique<hw::CanopenArm>(robot, *master_);
+  controller_ = std::make_unique<executor::Controller>(
+      cell, options.dry_run ? *options.dry_run : executor::dry_run(plan, cell), options.controller);
+  if (options.tamper) port_ = std::make_unique<TamperedArm>(*arm_, options.tamper);
+  Arm& port = port_ ? *port_ : static_cast<Arm&>(*arm_);
+  runner_ = std::make_unique<executor::CycleRunner>(port, *controller_, sink, loop);
+  sim::VirtualCell::Options world = world_of(options);
+  world.phases = &phases_;
+  virtual_cell_ = std::make_unique<sim::VirtualCell>(cell, task, world);
   time_ = std::make_unique<sim::Lockstep>(
       *arm_, *virtual_cell_, *link,
       sim::Lockstep::Parameters{.cycle_ns = std::int64_t{1000} * robot.cycle_us,
                                 .feedback_deadline = loop.feedback_deadline});
+}
+
+WholeRun::Result WholeRun::run_on_clock(sim::VirtualClock::Lateness late) {
+  master_->wait_by(*time_);
+  std::atomic<bool> stop = false;
+  const std::int64_t end_ns =
+      now_ns() + kRunMax_cycles * std::int64_t{1000} * cell_description_.robot.cycle_us;
+  sim::VirtualClock clock(*time_, [&](std::int64_t due_ns) {
+    if (due_ns > end_ns) stop = true;
+    return late(due_ns);
+  });
+  if (prepare()) runner_->run(stop, clock);
+  return result();
 }
 
 bool WholeRun::prepare() { return time_->prepare(); }

@@ -4,11 +4,13 @@
 // are given.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "executor/dry_run/dry_run.h"
 #include "executor/loop/controller.h"
 #include "executor/loop/cycle_runner.h"
 #include "hw/arm/canopen_arm.h"
@@ -17,7 +19,9 @@
 #include "shared/task/task.h"
 #include "sim/cell/faults/bus_faults.h"
 #include "sim/cell/faults/fault.h"
+#include "sim/cell/faults/fault_phases.h"
 #include "sim/cell/lockstep/lockstep.h"
+#include "sim/cell/lockstep/virtual_clock.h"
 #include "sim/cell/lockstep/virtual_link.h"
 #include "sim/cell/virtual_arm/virtual_cell.h"
 
@@ -36,6 +40,10 @@ class WholeRun {
     sim::WorldDraw world;
     std::optional<JointVector> joints;  ///< where the arm stands; unset: at the start
     sim::Link* link = nullptr;          ///< in place of the virtual bus; must outlive the run
+    /// What is executed where it was made already, for this cell or another; unset: by the run.
+    std::optional<executor::DryRun> dry_run = std::nullopt;
+    /// Called with every setpoint on its way from the executor to the arm; empty: left alone.
+    std::function<void(JointVector&)> tamper{};
   };
   struct Result {
     executor::Ending ending;
@@ -47,6 +55,9 @@ class WholeRun {
 
   WholeRun(const Cell& cell, const Task& task, const Plan& plan, const Options& options,
            executor::CycleSink* sink = nullptr);
+  WholeRun(const WholeRun&) = delete;
+  WholeRun& operator=(const WholeRun&) = delete;
+  ~WholeRun() = default;
 
   /// Brings the arm up. False: it failed, see arm().fault().
   bool prepare();
@@ -54,6 +65,8 @@ class WholeRun {
   bool cycle();
   /// prepare() and cycles to the end.
   Result run();
+  /// prepare() and the loop's own run() on virtual time. @param late by how much it wakes late
+  Result run_on_clock(sim::VirtualClock::Lateness late);
   /// As it stands.
   [[nodiscard]] Result result() const;
 
@@ -67,14 +80,19 @@ class WholeRun {
   [[nodiscard]] executor::Controller& controller() { return *controller_; }
   [[nodiscard]] executor::CycleRunner& runner() { return *runner_; }
   [[nodiscard]] sim::VirtualCell& cell() { return *virtual_cell_; }
+  /// Which faults wait for; a test may begin one earlier than the cell would notice it.
+  [[nodiscard]] sim::FaultPhases& phases() { return phases_; }
   [[nodiscard]] std::int64_t now_ns() const { return time_->now_ns(); }
 
  private:
   Cell cell_description_;
   Plan plan_;
   std::unique_ptr<sim::VirtualLink> link_;
+  sim::FaultPhases phases_;
   std::unique_ptr<sim::BusFaults> bus_faults_;
+  std::unique_ptr<sim::LockstepBus> master_;
   std::unique_ptr<hw::CanopenArm> arm_;
+  std::unique_ptr<Arm> port_;  ///< what the executor sees of it, where somebody tampers
   std::unique_ptr<executor::Controller> controller_;
   std::unique_ptr<executor::CycleRunner> runner_;
   std::unique_ptr<sim::VirtualCell> virtual_cell_;

@@ -63,6 +63,11 @@ class Drive402 final : private NodeApplication {
   [[nodiscard]] State state() const { return state_; }
   /// The brake's output; it holds a little later.
   [[nodiscard]] bool brake_engaged() const { return motion_.brake().engaged(); }
+  /// It ramps down under power, or its brake closes.
+  [[nodiscard]] bool stopping() const {
+    return motion_.phase() == DriveMotion::Phase::kRamping ||
+           motion_.phase() == DriveMotion::Phase::kEngaging;
+  }
   [[nodiscard]] std::uint16_t error_code() const {
     return static_cast<std::uint16_t>(objects_.error_code.value);
   }

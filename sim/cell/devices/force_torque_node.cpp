@@ -116,8 +116,10 @@ void ForceTorqueNode::on_sample() {
   if (faults_.strikes(FaultKind::kStaleForce)) return;
   if (faults_.strikes(FaultKind::kTornForce)) node_.repeat_transmit_pdo(1);
   const bool saturated = faults_.strikes(FaultKind::kSaturatedForce);
-  status_ = kStatusGood;
-  for (int axis = 0; axis < 6; ++axis) sample_axis(axis, saturated);
+  if (!faults_.strikes(FaultKind::kFrozenForce)) {
+    status_ = kStatusGood;
+    for (int axis = 0; axis < 6; ++axis) sample_axis(axis, saturated);
+  }
   ++counter_;
   node_.dictionary().set(object_id(canopen::kSampleCounter), counter_);
   node_.dictionary().set(object_id(canopen::kSensorStatus), status_);
@@ -128,7 +130,8 @@ void ForceTorqueNode::sample_axis(int axis, bool saturated) {
   const double range = force ? sensor_.force_range_N : sensor_.torque_range_Nm;
   const double sigma = force ? sensor_.force_noise_N : sensor_.torque_noise_Nm;
   const double per_count = force ? sensor_.force_per_count_N : sensor_.torque_per_count_Nm;
-  const double value = filtered_[axis] + bias_[axis] - tare_[axis] + sigma * noise_.normal();
+  const double value = filtered_[axis] + bias_[axis] - tare_[axis] + sigma * noise_.normal() +
+                       (axis == 0 ? forged_N() : 0.0);
   if (saturated || !(std::abs(value) < range)) status_ = kStatusSaturated;
   const double limited = saturated ? range : std::clamp(value, -range, range);
   const std::int64_t counts = std::llround(limited / per_count);
@@ -136,8 +139,19 @@ void ForceTorqueNode::sample_axis(int axis, bool saturated) {
                          std::clamp(counts, -kCountMax, kCountMax));
 }
 
+double ForceTorqueNode::forged_N() const {
+  const Fault* forged = faults_.find(FaultKind::kForgedForce);
+  const Fault* drifting = faults_.find(FaultKind::kDriftingForce);
+  double force_N = forged == nullptr ? 0.0 : forged->value;
+  if (drifting != nullptr) {
+    force_N += drifting->value * 1e-9 * static_cast<double>(now_ns_ - drifting_since_ns_);
+  }
+  return force_N;
+}
+
 void ForceTorqueNode::inject(const Fault& fault) {
   const FaultTarget target = target_of(fault.kind);
+  if (fault.kind == FaultKind::kDriftingForce) drifting_since_ns_ = now_ns_;
   if (target == FaultTarget::kSensor) return faults_.begin(fault, now_ns_);
   if (target != FaultTarget::kNode || !happens(fault)) return;
   if (fault.kind == FaultKind::kNodeReset) return node_.power_on(now_ns_);

@@ -45,8 +45,8 @@ class ForceTorqueNode final : private NodeApplication {
   void measured(const Vector6& wrench, std::int64_t step_ns);
 
   /// Begins a fault now, that is at the time of the last advance(). Node reset, silent node and
-  /// emergency are drawn once; stale, torn and saturated force strike each sample by their
-  /// probability. Others are not a sensor's, and ignored.
+  /// emergency are drawn once; stale, torn, saturated and frozen force strike each sample by their
+  /// probability; drifting and forged force last. Others are not a sensor's, and ignored.
   void inject(const Fault& fault);
 
  private:
@@ -58,6 +58,8 @@ class ForceTorqueNode final : private NodeApplication {
   void add_objects();
   void drift(std::int64_t step_ns);
   void sample_axis(int axis, bool saturated);
+  /// What faults add along x.
+  [[nodiscard]] double forged_N() const;
 
   ForceTorqueSensor sensor_;
   Imperfections imperfections_;
@@ -69,6 +71,7 @@ class ForceTorqueNode final : private NodeApplication {
   Vector6 bias_ = Vector6::Zero();
   Vector6 tare_ = Vector6::Zero();
   std::int64_t now_ns_ = 0;
+  std::int64_t drifting_since_ns_ = 0;
   std::uint16_t counter_ = 0;
   std::uint16_t status_ = kStatusGood;
 };

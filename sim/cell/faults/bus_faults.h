@@ -10,6 +10,7 @@
 #include "shared/base/random.h"
 #include "sim/cell/bus/disturbance.h"
 #include "sim/cell/faults/fault.h"
+#include "sim/cell/faults/fault_phases.h"
 #include "sim/cell/faults/frame_sender.h"
 
 namespace tenon::sim {
@@ -18,7 +19,9 @@ class BusFaults final : public Disturbance {
  public:
   /// @param master_node of the robot; a fault names it to mean the master's frames
   /// @param on_ns when the cell was switched on: time 0 of the faults
-  BusFaults(std::span<const Fault> faults, std::uint8_t master_node, std::int64_t on_ns = 0);
+  /// @param phases of the cell, for faults that wait for one; must outlive this
+  BusFaults(std::span<const Fault> faults, std::uint8_t master_node, std::int64_t on_ns = 0,
+            const FaultPhases* phases = nullptr);
 
   [[nodiscard]] SendResult admit(const CanFrame& frame, std::int64_t now_ns) noexcept override;
   [[nodiscard]] Fate fate(CanFrame& frame, std::size_t end, std::int64_t now_ns) noexcept override;
@@ -31,16 +34,17 @@ class BusFaults final : public Disturbance {
  private:
   struct Active {
     Fault fault;
-    std::int64_t begin_ns = 0;
-    std::int64_t end_ns = 0;
     Random source;
     bool spent = false;  ///< of those that strike once
   };
 
-  [[nodiscard]] static bool lasts(const Active& active, std::int64_t now_ns);
-  [[nodiscard]] bool strikes(Active& active, std::uint8_t node, std::int64_t now_ns);
+  [[nodiscard]] bool lasts(const Active& active, std::int64_t now_ns) const;
+  [[nodiscard]] bool means(const Fault& fault, const CanFrame& frame) const;
+  [[nodiscard]] bool strikes(Active& active, const CanFrame& frame, std::int64_t now_ns);
 
   FrameSender sender_;
+  std::int64_t on_ns_;
+  const FaultPhases* phases_;
   std::vector<Active> active_;
   std::uint64_t struck_ = 0;
 };

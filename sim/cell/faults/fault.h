@@ -2,12 +2,15 @@
 // A fault to inject into a simulated bus or device: what, where, when, how likely. Plain data; the
 // party that carries it out knows nothing of the executor. `--fault help` lists the kinds.
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace tenon::sim {
 
 enum class FaultKind : std::uint8_t {
-  // On the bus. `node` is the one whose frames are meant; 0: every frame.
+  // On the bus. `node` is the one whose frames are meant, of setpoints the one that they are for;
+  // 0: every frame.
   kDrop = 0,           ///< a frame is lost for all receivers
   kDelay = 1,          ///< a frame arrives `value` seconds late
   kDuplicate = 2,      ///< a frame arrives twice
@@ -30,6 +33,10 @@ enum class FaultKind : std::uint8_t {
   kKeepsPower = 17,   ///< it stays in quick stop active, under power, once its master is lost
   kSlowBrake = 18,    ///< the brake holds `value` seconds after its output; the drive waits less
   kResumesStop = 19,  ///< a quick stop is over as soon as an enable word from before it is found
+  // In the sensor, beside the three above.
+  kFrozenForce = 20,    ///< the wrench stays as it was, the counter runs on
+  kDriftingForce = 21,  ///< the force along x moves away by `value` newtons a second
+  kForgedForce = 22,    ///< the force along x reads `value` newtons more
 };
 
 /// Who carries it out.
@@ -65,6 +72,9 @@ enum class FaultTarget : std::uint8_t {
     case FaultKind::kStaleForce:
     case FaultKind::kTornForce:
     case FaultKind::kSaturatedForce:
+    case FaultKind::kFrozenForce:
+    case FaultKind::kDriftingForce:
+    case FaultKind::kForgedForce:
       return FaultTarget::kSensor;
   }
   return FaultTarget::kBus;
@@ -74,14 +84,45 @@ enum class FaultTarget : std::uint8_t {
   return target_of(kind) == FaultTarget::kBus;
 }
 
+/// It strikes single frames: its `frames` say which.
+[[nodiscard]] constexpr bool strikes_frames(FaultKind kind) {
+  return kind == FaultKind::kDrop || kind == FaultKind::kDelay || kind == FaultKind::kDuplicate ||
+         kind == FaultKind::kCorruptLength;
+}
+
+enum class FrameKind : std::uint8_t {
+  kAny = 0,
+  kSync = 1,
+  kHeartbeat = 2,
+  kEmergency = 3,
+  kAnswers = 4,    ///< process data that a device sends
+  kSetpoints = 5,  ///< process data that a device receives
+  kSdo = 6,        ///< both ways
+  kOne = 7,        ///< the identifier `cob_id`
+};
+
+/// What the cell is doing, as it can tell by itself.
+enum class FaultPhase : std::uint8_t {
+  kEnabling = 0,  ///< a drive's power comes on
+  kFree = 1,      ///< all drives are enabled, a joint moves, and nothing touches
+  kSliding = 2,   ///< something has touched for 50 ms, and a joint moves
+  kContact = 3,   ///< something touches
+  kStopping = 4,  ///< all drives were enabled, and one ramps down, or its brake closes
+};
+inline constexpr std::size_t kFaultPhases = 5;
+
 struct Fault {
   FaultKind kind = FaultKind::kDrop;
   std::uint8_t node = 0;
-  double time_s = 0.0;       ///< begin, in simulated time since switching on
+  /// Begin, in simulated time since switching on, or since its phase began for the first time.
+  double time_s = 0.0;
   double duration_s = 0.0;   ///< 0: once; for states (silent, down, stale...) until the end
   double probability = 1.0;  ///< of every frame or sample while it lasts
   double value = 0.0;        ///< see the kind
   std::uint64_t seed = 1;    ///< of the draws
+  std::optional<FaultPhase> at = std::nullopt;  ///< unset: it waits for no phase
+  FrameKind frames = FrameKind::kAny;           ///< of those that strike frames
+  std::uint32_t cob_id = 0;                     ///< of FrameKind::kOne
 };
 
 }  // namespace tenon::sim

@@ -1,7 +1,9 @@
 #include "sim/cell/faults/fault_spec.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <span>
 #include <string_view>
 
 #include "shared/base/error.h"
@@ -22,7 +24,7 @@ struct Kind {
   const char* example = "";
 };
 
-constexpr std::array<Kind, 20> kKinds{{
+constexpr std::array<Kind, 23> kKinds{{
     {FaultKind::kDrop, "drop", false, nullptr, 0, 0, "a frame is lost for all receivers",
      "drop:node=3,time_s=2,duration_s=0.5,probability=0.1,seed=7"},
     {FaultKind::kDelay, "delay", false, "delay_s", 1e-6, 10.0, "a frame arrives delay_s late",
@@ -72,7 +74,21 @@ constexpr std::array<Kind, 20> kKinds{{
     {FaultKind::kResumesStop, "resumes-stop", true, nullptr, 0, 0,
      "the drive leaves a quick stop for the last enable word from before it, once each",
      "resumes-stop:node=1"},
+    {FaultKind::kFrozenForce, "frozen-force", false, nullptr, 0, 0,
+     "the sensor's wrench stays as it was, its counter runs on",
+     "frozen-force:at=contact,duration_s=0.5"},
+    {FaultKind::kDriftingForce, "drifting-force", false, "rate_Nps", -1000.0, 1000.0,
+     "the sensor's force along x moves away at that rate", "drifting-force:time_s=3,rate_Nps=0.5"},
+    {FaultKind::kForgedForce, "forged-force", false, "force_N", -1000.0, 1000.0,
+     "the sensor's force along x reads that much more",
+     "forged-force:at=free,time_s=0.1,force_N=80,duration_s=0.01"},
 }};
+
+constexpr std::array<std::string_view, kFaultPhases> kPhaseNames = {"enabling", "free", "sliding",
+                                                                    "contact", "stopping"};
+// By the values of FrameKind, up to kSdo.
+constexpr std::array<std::string_view, 7> kFrameNames = {"any",     "sync", "heartbeat", "emcy",
+                                                         "answers", "rpdo", "sdo"};
 
 const Kind& kind_of(FaultKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
 
@@ -89,7 +105,8 @@ static_assert(in_order());
 }
 
 std::string keys_of(const Kind& kind) {
-  std::string keys = "node, time_s, duration_s, probability, seed";
+  std::string keys = "node, time_s, duration_s, probability, seed, at";
+  if (strikes_frames(kind.kind)) keys += ", id";
   if (kind.value_key != nullptr) keys += std::string(", ") + kind.value_key;
   return keys;
 }
@@ -150,6 +167,10 @@ class Parser {
     const std::string_view value = item.substr(equals + 1);
     if (key == "node") {
       fault_.node = static_cast<std::uint8_t>(integer(key, value, kind.needs_node ? 1 : 0, 127));
+    } else if (key == "at") {
+      fault_.at = static_cast<FaultPhase>(one_of(key, value, kPhaseNames));
+    } else if (key == "id" && strikes_frames(kind.kind)) {
+      take_id(key, value);
     } else if (key == "time_s") {
       fault_.time_s = number(key, value, 0.0, kTimeMax_s);
     } else if (key == "duration_s") {
@@ -165,6 +186,25 @@ class Parser {
       value_given_ = true;
     } else {
       refuse(text_, "there is no key '" + key + "'; " + kind.name + " takes " + keys_of(kind));
+    }
+  }
+
+  /// The place of `value` among the names.
+  [[nodiscard]] std::size_t one_of(const std::string& key, std::string_view value,
+                                   std::span<const std::string_view> names) const {
+    const auto found = std::find(names.begin(), names.end(), value);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    std::string all;
+    for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
+    refuse(text_, key + " = '" + std::string(value) + "', must be one of " + all);
+  }
+
+  void take_id(const std::string& key, std::string_view value) {
+    if (!value.empty() && value.front() >= '0' && value.front() <= '9') {
+      fault_.frames = FrameKind::kOne;
+      fault_.cob_id = static_cast<std::uint32_t>(integer(key, value, 0, 0x7FF));
+    } else {
+      fault_.frames = static_cast<FrameKind>(one_of(key, value, kFrameNames));
     }
   }
 
@@ -213,10 +253,16 @@ std::string fault_help() {
       "--fault KIND:KEY=VALUE,...   may be given several times\n"
       "  node          whose frames or which device, 1..127; the robot file's master_node for the\n"
       "                master; default 0: all\n"
-      "  time_s        begin, in simulated seconds since switching on; default 0\n"
+      "  at            waits for what the cell does first: enabling, free, sliding, contact,\n"
+      "                stopping (sim/README.md says when each begins)\n"
+      "  time_s        begin, in simulated seconds since switching on, or since that; default 0\n"
       "  duration_s    default 0: a single frame; where it is a state, to the end\n"
       "  probability   of each frame or sample while it lasts, (0, 1]; default 1\n"
-      "  seed          of these draws; default 1\n";
+      "  seed          of these draws; default 1\n"
+      "  id            of drop, delay, duplicate, corrupt-length: which frames alone; sync, "
+      "heartbeat,\n"
+      "                emcy, answers (process data from node), rpdo (for node), sdo, or a number;\n"
+      "                default any\n";
   for (const Kind& kind : kKinds) {
     const std::string name = kind.name;
     help += name + std::string(17 - name.size(), ' ') + kind.meaning;
@@ -230,5 +276,9 @@ std::string fault_help() {
 }
 
 const char* to_string(FaultKind kind) { return kind_of(kind).name; }
+
+const char* to_string(FaultPhase phase) {
+  return kPhaseNames[static_cast<std::size_t>(phase)].data();
+}
 
 }  // namespace tenon::sim

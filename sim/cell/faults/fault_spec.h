@@ -19,5 +19,6 @@ namespace tenon::sim {
 [[nodiscard]] std::string fault_help();
 
 [[nodiscard]] const char* to_string(FaultKind kind);
+[[nodiscard]] const char* to_string(FaultPhase phase);
 
 }  // namespace tenon::sim

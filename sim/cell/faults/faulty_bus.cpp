@@ -3,8 +3,11 @@
 namespace tenon::sim {
 
 FaultyBus::FaultyBus(CanBus& bus, std::span<const Fault> faults, std::uint8_t master_node,
-                     std::int64_t now_ns)
-    : bus_(bus), faults_(faults, master_node, now_ns), master_node_(master_node), now_ns_(now_ns) {}
+                     std::int64_t now_ns, const FaultPhases* phases)
+    : bus_(bus),
+      faults_(faults, master_node, now_ns, phases),
+      master_node_(master_node),
+      now_ns_(now_ns) {}
 
 void FaultyBus::advance(std::int64_t now_ns) {
   now_ns_ = now_ns;

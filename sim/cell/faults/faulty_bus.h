@@ -19,8 +19,9 @@ namespace tenon::sim {
 class FaultyBus final : public CanBus {
  public:
   /// @param now_ns time 0 of the faults
+  /// @param phases of the cell, for faults that wait for one; must outlive this
   FaultyBus(CanBus& bus, std::span<const Fault> faults, std::uint8_t master_node,
-            std::int64_t now_ns);
+            std::int64_t now_ns, const FaultPhases* phases = nullptr);
 
   /// Delayed frames whose time has come move on.
   void advance(std::int64_t now_ns);

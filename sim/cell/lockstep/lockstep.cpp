@@ -24,9 +24,7 @@ bool Lockstep::prepare() {
     }
     if (arm_.state() == ArmState::kFault) return false;
     const std::int64_t ask_ns = std::min(now_ns_ + kTick_ns, until_ns);
-    do {
-      step(ask_ns);
-    } while (now_ns_ < ask_ns && !link_.at_master());
+    await_master(ask_ns);
   }
   return false;
 }
@@ -41,6 +39,12 @@ void Lockstep::step(std::int64_t until_ns) {
 
 void Lockstep::run_until(std::int64_t until_ns) {
   while (now_ns_ < until_ns) step(until_ns);
+}
+
+void Lockstep::await_master(std::int64_t until_ns) {
+  do {
+    step(until_ns);
+  } while (now_ns_ < until_ns && !link_.at_master());
 }
 
 void Lockstep::run_to_sync() {
@@ -61,9 +65,7 @@ void Lockstep::await_feedback() {
       ++statistics_.incomplete_cycles;
       return;
     }
-    do {
-      step(deadline_ns);
-    } while (now_ns_ < deadline_ns && !link_.at_master());
+    await_master(deadline_ns);
   }
   statistics_.latest_feedback_ns = std::max(statistics_.latest_feedback_ns, now_ns_ - sync_ns);
 }

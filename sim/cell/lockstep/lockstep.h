@@ -52,12 +52,16 @@ class Lockstep {
   /// Time goes on without the executor: what a killed process looks like from the bus.
   void leave_alone(std::int64_t duration_ns) { run_until(now_ns_ + duration_ns); }
 
+  // For a loop that runs by itself (virtual_clock.h).
+  void run_until(std::int64_t until_ns);
+  /// Until something waits at the master's end, at most so long.
+  void await_master(std::int64_t until_ns);
+
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
 
  private:
   void step(std::int64_t until_ns);
-  void run_until(std::int64_t until_ns);
   void run_to_sync();
   void await_feedback();
 

@@ -1,9 +1,16 @@
 #include "sim/cell/virtual_arm/cell_watch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace tenon::sim {
+namespace {
+
+constexpr double kMoving = 2e-3;  // m/s or rad/s
+constexpr std::int64_t kSettled_ns = 50'000'000;
+
+}  // namespace
 
 void CellWatch::power_on() {
   for (const Drive402& drive : drives_) {
@@ -26,6 +33,38 @@ void CellWatch::look_at_drives(std::int64_t time_ns) {
       brakes_seen_[i] = drives_[i].brake_engaged();
       tell(brakes_seen_[i] ? "brake engaged" : "brake released");
     }
+  }
+}
+
+void CellWatch::look_at_phases(std::int64_t now_ns) {
+  const auto any = [this](const auto& is) {
+    return std::any_of(drives_.begin(), drives_.end(), is);
+  };
+  if (any([](const Drive402& d) { return d.state() == Drive402::State::kSwitchedOn; })) {
+    phases_.begin(FaultPhase::kEnabling, now_ns);
+  }
+  const bool enabled =
+      !any([](const Drive402& d) { return d.state() != Drive402::State::kOperationEnabled; });
+  were_enabled_ = were_enabled_ || enabled;
+  if (were_enabled_ && any([](const Drive402& d) { return d.stopping(); })) {
+    phases_.begin(FaultPhase::kStopping, now_ns);
+  }
+  const bool touching = arm_.contact_force_N() > 0.0;
+  if (!touching) touching_since_ns_.reset();
+  if (touching && !touching_since_ns_) touching_since_ns_ = now_ns;
+  if (!enabled) return;
+  bool moving = false;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    moving = moving || std::abs(arm_.joint(i).velocity) > kMoving;
+  }
+  if (!moving) moving_since_ns_.reset();
+  if (moving && !moving_since_ns_) moving_since_ns_ = now_ns;
+  if (touching) phases_.begin(FaultPhase::kContact, now_ns);
+  // Axes sag for a moment as their brakes open.
+  if (!moving || now_ns - *moving_since_ns_ < kSettled_ns) return;
+  if (!touching) phases_.begin(FaultPhase::kFree, now_ns);
+  if (touching && now_ns - *touching_since_ns_ >= kSettled_ns) {
+    phases_.begin(FaultPhase::kSliding, now_ns);
   }
 }
 

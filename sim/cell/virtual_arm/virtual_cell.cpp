@@ -84,6 +84,7 @@ class VirtualCell::Impl {
         options_(options),
         start_name_(start_or_first(task, options.start).name),
         faults_to_come_(pending_faults(cell.robot, options.faults)),
+        phases_(options.phases != nullptr ? *options.phases : own_phases_),
         arm_(cell_, real_task(task, options.world), arm_parameters(cell, cell_, task, options)),
         sensor_(cell_.robot.sensor, options.seed, sensor_imperfections(options.world)),
         delay_(cell.robot.joints.size(), delay_steps(options)),
@@ -123,6 +124,8 @@ class VirtualCell::Impl {
   Options options_;
   std::string start_name_;
   std::vector<Fault> faults_to_come_;  ///< the earliest last
+  FaultPhases own_phases_;
+  FaultPhases& phases_;
   ArmBody arm_;
   std::deque<Drive402> drives_;
   ForceTorqueNode sensor_;
@@ -140,7 +143,7 @@ class VirtualCell::Impl {
   std::vector<CanFrame> outgoing_;
   std::uint64_t frames_not_sent_ = 0;
 
-  CellWatch watch_{cell_.robot, drives_, arm_};
+  CellWatch watch_{cell_.robot, drives_, arm_, phases_};
 };
 
 void VirtualCell::Impl::power_on(std::int64_t now_ns) {
@@ -206,13 +209,19 @@ void VirtualCell::Impl::physics_step() {
   ++wrench_count_;
   watch_.look_at_drives(time_ns());
   watch_.look_at_contacts(time_ns());
+  watch_.look_at_phases(physics_ns_);
 }
 
 void VirtualCell::Impl::inject_faults() {
-  const double time_s = static_cast<double>(time_ns()) / kNanosecondsPerSecond;
-  while (!faults_to_come_.empty() && faults_to_come_.back().time_s <= time_s) {
-    const Fault fault = faults_to_come_.back();
-    faults_to_come_.pop_back();
+  const auto is_due = [this](const Fault& fault) {
+    const auto begins_ns = begin_ns(fault, on_ns_, &phases_);
+    return begins_ns && *begins_ns <= physics_ns_;
+  };
+  // Few: what waits for a phase may come before what waits for a time.
+  for (std::size_t left = faults_to_come_.size(); left-- > 0;) {
+    if (!is_due(faults_to_come_[left])) continue;
+    const Fault fault = faults_to_come_[left];
+    faults_to_come_.erase(faults_to_come_.begin() + static_cast<std::ptrdiff_t>(left));
     for (std::size_t i = 0; i < drives_.size(); ++i) {
       if (cell_.robot.joints[i].node == fault.node) drives_[i].inject(fault);
     }

@@ -21,6 +21,7 @@
 #include "shared/ports/can_bus.h"
 #include "shared/task/task.h"
 #include "sim/cell/faults/fault.h"
+#include "sim/cell/faults/fault_phases.h"
 #include "sim/cell/virtual_arm/truth.h"
 #include "sim/cell/virtual_arm/world_draw.h"
 
@@ -34,6 +35,7 @@ class VirtualCell {
     Vector6 offset = Vector6::Zero();   ///< displacement of the environment, task axes
     WorldDraw world;                    ///< how the real cell and task differ from those given
     std::vector<Fault> faults;          ///< those of devices are carried out, those of the bus not
+    FaultPhases* phases = nullptr;      ///< noted there too, for the bus; must outlive the cell
     std::optional<JointVector> joints;  ///< unset: tool at the start in the nominal task frame
     std::int64_t physics_step_ns = 500'000;
     /// A clock of the caller's, read before and after each step of physics, for its cost alone.

@@ -1,0 +1,99 @@
+// Faults that wait for what the cell does: in whole runs the phases come in their order, each at
+// its place, and a fault strikes there.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "sim/cell/faults/fault_spec.h"
+#include "tests/support/faulty_options.h"
+#include "tests/support/planned.h"
+#include "tests/support/rest_watch.h"
+#include "tests/support/whole_run.h"
+
+namespace tenon::tests {
+namespace {
+
+using executor::EndReason;
+using executor::State;
+using sim::FaultPhase;
+
+struct Seen {
+  State state = State::kWaiting;
+  double force_N = 0.0;
+  std::int64_t at_ns = -1;
+};
+
+TEST(FaultPhases, EachBeginsWhereTheExecutorIsInIt) {
+  for (const char* name : {"gantry3", "csp6"}) {
+    const Cell cell = shipped_cell(name);
+    const auto [task, plan] = planned_box(cell, "1");
+    WholeRun run(cell, task, plan, with_faults({}));
+    ASSERT_TRUE(run.prepare());
+    std::array<Seen, sim::kFaultPhases> seen;
+    while (run.cycle()) {
+      for (std::size_t i = 0; i < seen.size(); ++i) {
+        const auto began_ns = run.phases().began_ns(static_cast<FaultPhase>(i));
+        if (!began_ns || seen[i].at_ns >= 0) continue;
+        seen[i] = {run.controller().state(), run.result().truth.contact_force_N_max, *began_ns};
+      }
+    }
+    const auto of = [&](FaultPhase phase) { return seen[static_cast<std::size_t>(phase)]; };
+    EXPECT_EQ(of(FaultPhase::kEnabling).state, State::kWaiting) << name;
+    EXPECT_EQ(of(FaultPhase::kFree).state, State::kRunning) << name;
+    EXPECT_EQ(of(FaultPhase::kFree).force_N, 0.0) << name;
+    EXPECT_EQ(of(FaultPhase::kContact).state, State::kRunning) << name;
+    EXPECT_GT(of(FaultPhase::kContact).force_N, 0.0) << name;
+    EXPECT_EQ(of(FaultPhase::kSliding).state, State::kRunning) << name;
+    EXPECT_EQ(of(FaultPhase::kStopping).state, State::kDisabling) << name;
+    EXPECT_LT(of(FaultPhase::kEnabling).at_ns, of(FaultPhase::kFree).at_ns) << name;
+    EXPECT_LT(of(FaultPhase::kFree).at_ns, of(FaultPhase::kContact).at_ns) << name;
+    EXPECT_LT(of(FaultPhase::kContact).at_ns, of(FaultPhase::kSliding).at_ns) << name;
+    EXPECT_LT(of(FaultPhase::kSliding).at_ns, of(FaultPhase::kStopping).at_ns) << name;
+  }
+}
+
+TEST(FaultPhases, FaultsOfBusAndDevicesStrikeThere) {
+  for (const char* kind : {"drop:node=1,duration_s=100", "emergency:node=1,code=0x3210"}) {
+    for (const FaultPhase phase :
+         {FaultPhase::kEnabling, FaultPhase::kFree, FaultPhase::kContact, FaultPhase::kSliding}) {
+      const std::string spec = std::string(kind) + ",at=" + sim::to_string(phase);
+      WholeRun run(gantry_cell(), box_task(), box_plan("1"), with_faults({spec}));
+      const auto result = run.run();
+      ASSERT_EQ(result.ending.reason, EndReason::kArmFault) << spec << ": " << result.reason;
+      const auto began_ns = run.phases().began_ns(phase);
+      ASSERT_TRUE(began_ns.has_value()) << spec;
+      // Quick stop, disabling without an answer and watching the brakes come after it.
+      EXPECT_LT(static_cast<double>(run.now_ns() - *began_ns), 5e9) << spec;
+    }
+  }
+}
+
+// Answers or setpoints of one drive alone.
+TEST(FaultPhases, OnlyADrivesAnswersOrOnlyItsSetpointsAreLost) {
+  for (const char* name : {"gantry3", "csp6"}) {
+    const Cell cell = shipped_cell(name);
+    const auto [task, plan] = planned_box(cell, "1");
+    for (const char* id : {"answers", "rpdo"}) {
+      const std::string spec =
+          std::string("drop:node=1,at=free,time_s=0.1,duration_s=100,id=") + id;
+      WholeRun run(cell, task, plan, with_faults({spec}));
+      const auto result = run.run();
+      const bool answers = std::string(id) == "answers";
+      EXPECT_EQ(result.ending.reason, answers ? EndReason::kArmFault : EndReason::kFollowingError)
+          << name << " " << spec << ": " << result.reason;
+      if (answers) {
+        EXPECT_EQ(result.ending.arm_fault.kind, ArmFaultKind::kFeedbackMissing);
+      }
+      RestWatch rest(cell.robot);
+      run.leave_alone(1.5);  // more than the heartbeat's timeout, a ramp and a brake
+      rest.look(run.result().truth);
+      EXPECT_EQ(rest.complaints(), "") << name << " " << spec;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tenon::tests

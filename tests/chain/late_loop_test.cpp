@@ -1,0 +1,64 @@
+// The loop's own run() in virtual time: it wakes late, and what that comes to.
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "tests/support/faulty_options.h"
+#include "tests/support/planned.h"
+#include "tests/support/whole_run.h"
+
+namespace tenon::tests {
+namespace {
+
+using executor::EndReason;
+
+constexpr std::int64_t kMillisecond_ns = 1'000'000;
+constexpr std::int64_t kCycle_ns = 2 * kMillisecond_ns;
+
+TEST(LateLoop, OnTimeItIsTheRunThatLockstepMakes) {
+  WholeRun stepped(gantry_cell(), box_task(), box_plan("1"), with_faults({}));
+  WholeRun clocked(gantry_cell(), box_task(), box_plan("1"), with_faults({}));
+  const auto expected = stepped.run();
+  const auto result = clocked.run_on_clock([](std::int64_t) { return 0; });
+  EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
+  EXPECT_EQ(clocked.runner().statistics().late_cycles, 0U);
+  EXPECT_EQ(clocked.runner().statistics().incomplete_cycles, 0U);
+  EXPECT_EQ(clocked.runner().statistics().cycles, stepped.runner().statistics().cycles);
+  EXPECT_LT((result.truth.tool.position_m - expected.truth.tool.position_m).norm(), 1e-9);
+}
+
+// 300 us late, then 1.7 ms early in the next cycle's eyes: the phase stays.
+TEST(LateLoop, AWakeUpWithinItsPeriodSkipsNoCycle) {
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), with_faults({}));
+  const auto result = run.run_on_clock(
+      [](std::int64_t due_ns) { return due_ns / kCycle_ns % 100 == 0 ? 300'000 : 0; });
+  EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
+  EXPECT_EQ(run.runner().statistics().late_cycles, 0U);
+}
+
+TEST(LateLoop, OneLateCycleIsCountedAndRiddenOut) {
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), with_faults({}));
+  bool late = false;
+  const auto result = run.run_on_clock([&](std::int64_t due_ns) {
+    if (late || due_ns < 4000 * kMillisecond_ns) return std::int64_t{0};
+    late = true;
+    return 3 * kMillisecond_ns;
+  });
+  EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
+  EXPECT_EQ(run.runner().statistics().late_cycles, 1U);
+}
+
+TEST(LateLoop, ALoopThatIsLateAgainAndAgainIsEndedByName) {
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), with_faults({}));
+  const auto result = run.run_on_clock([](std::int64_t due_ns) {
+    return due_ns > 4000 * kMillisecond_ns ? 3 * kMillisecond_ns : 0;
+  });
+  EXPECT_TRUE(result.ending.reason == EndReason::kOverruns ||
+              result.ending.reason == EndReason::kBlind)
+      << result.reason;
+  for (const auto& drive : result.truth.drives) EXPECT_TRUE(drive.brake_engaged) << drive.joint;
+}
+
+}  // namespace
+}  // namespace tenon::tests
