@@ -16,7 +16,7 @@
 # ---------------------------------------------------------------------------------------------
 set(TENON_LIBRARIES shared shared_system shared_drawing shared_config lcmtypes
     planner planner_belief planner_search planner_judge planner_report
-    executor executor_states executor_record executor_motion executor_sensing executor_dry_run
+    executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
     hw_can hw_canopen hw_cia402 hw_arm hw_load
     sim_physics sim_cell sim_evaluation sim_evaluation_chain)
@@ -34,13 +34,14 @@ set(TENON_MAY_USE_planner_judge  shared planner_belief)
 set(TENON_MAY_USE_planner_report shared shared_drawing planner planner_belief planner_judge
                                  nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_executor                shared executor_motion)
-set(TENON_MAY_USE_executor_states         shared)
+set(TENON_MAY_USE_executor_faults         shared)
+set(TENON_MAY_USE_executor_states         shared executor_faults)
 set(TENON_MAY_USE_executor_record         shared shared_system executor_states)
 set(TENON_MAY_USE_executor_motion         shared executor_states)
-set(TENON_MAY_USE_executor_sensing        shared executor_states)
+set(TENON_MAY_USE_executor_sensing        shared executor_faults executor_states)
 set(TENON_MAY_USE_executor_dry_run        shared executor_motion nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_executor_loop           shared shared_system executor_states executor_record
-                                          executor_motion executor_sensing executor_dry_run)
+set(TENON_MAY_USE_executor_loop           shared shared_system executor_faults executor_states
+                                          executor_record executor_motion executor_sensing executor_dry_run)
 set(TENON_MAY_USE_executor_identification shared executor_states executor_record executor_motion
                                           executor_sensing executor_loop)
 # Message types and LCM are telemetry's alone.

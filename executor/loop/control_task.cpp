@@ -85,8 +85,11 @@ void ControlTask::take(const Turn& turn) {
 
 std::optional<Event> ControlTask::event_of(const Turn& turn) {
   if (const auto* event = std::get_if<Event>(&turn)) return *event;
-  if (const auto* ending = std::get_if<Ending>(&turn)) return remember(*ending);
-  return std::nullopt;
+  const auto* ending = std::get_if<Ending>(&turn);
+  if (ending == nullptr || parameters_.masked.masks(ending->reason, ending->arm_fault.kind)) {
+    return std::nullopt;
+  }
+  return remember(*ending);
 }
 
 ControlTask::Turn ControlTask::enter_state(State state) {

@@ -13,6 +13,8 @@
 #include <optional>
 #include <variant>
 
+#include "executor/faults/fault_bounds.h"
+#include "executor/faults/fault_table.h"
 #include "executor/loop/supervision.h"
 #include "executor/motion/joint_command.h"
 #include "executor/motion/tool_kinematics.h"
@@ -28,16 +30,18 @@ namespace tenon::executor {
 class ControlTask {
  public:
   struct Parameters {
-    int tare_samples = 200;
+    int tare_samples = kTareSamples;
     double tare_motion_max = 2e-4;  ///< m or rad that a joint may move while taring
-    double enable_timeout_s = 5.0;
+    double enable_timeout_s = kEnableTimeout_s;
     double disable_timeout_s = 3.0;
     double hold_s = 0.2;
-    double quick_stop_s = 0.5;   ///< left to the drives to ramp down; more where a joint needs more
-    double brake_watch_s = 0.5;  ///< after the drives are off; more than a brake takes to close
+    double quick_stop_s = 0.5;  ///< left to the drives to ramp down; more where a joint needs more
+    double brake_watch_s =
+        kBrakeWatch_s;             ///< after the drives are off; more than a brake takes to close
     double brake_play_rad = 2e-3;  ///< that a joint may move with its brake closed
     double brake_play_m = 5e-4;
     Supervision::Parameters supervision;
+    FaultMask masked;  ///< in tests alone: these end no run
   };
 
   struct Command {

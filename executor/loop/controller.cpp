@@ -2,16 +2,10 @@
 
 #include <cmath>
 
+#include "executor/faults/fault_bounds.h"
 #include "executor/motion/joint_difference.h"
 
 namespace tenon::executor {
-namespace {
-
-// Samples above the on-threshold that make a contact during the approach.
-constexpr int kTouchSamples = 2;
-
-}  // namespace
-
 Controller::Controller(const Cell& cell, const DryRun& dry_run, const Parameters& parameters)
     : ControlTask(cell, parameters),
       plan_(with_steps(dry_run.plan)),

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "executor/faults/fault_bounds.h"
 #include "executor/loop/control_task.h"
 #include "executor/loop/leaky_bucket.h"
 #include "executor/record/black_box.h"
@@ -25,7 +26,7 @@ class CycleRunner {
     LeakyBucket::Parameters late;
     /// Each cycle without its feedback costs some of the plan's accuracy, which no envelope sees:
     /// one in a hundred can go on for ever.
-    LeakyBucket::Parameters incomplete{30.0, 0.01};
+    LeakyBucket::Parameters incomplete{kIncompleteCyclesMost, 0.01};
   };
 
   struct Statistics {

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "executor/faults/fault_bounds.h"
+
 namespace tenon::executor {
 
 class LeakyBucket {
  public:
   struct Parameters {
-    double capacity = 50.0;  ///< bad cycles at once that are one too many
-    double leak = 0.05;      ///< per good cycle: one bad cycle in twenty can go on for ever
+    double capacity = kLateCyclesMost;  ///< bad cycles at once that are one too many
+    double leak = 0.05;  ///< per good cycle: one bad cycle in twenty can go on for ever
   };
 
   explicit LeakyBucket(const Parameters& parameters) : parameters_(parameters) {}

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "executor/faults/fault_bounds.h"
 #include "executor/motion/tool_kinematics.h"
 #include "executor/sensing/following_watch.h"
 #include "executor/sensing/wrench_estimator.h"
@@ -19,9 +20,9 @@ namespace tenon::executor {
 class Supervision {
  public:
   struct Parameters {
-    int feedback_misses_max = 10;  ///< cycles in a row
-    double wrench_age_max_s = 0.05;
-    double blind_max_s = 0.1;  ///< without a sample that guarded moves may see
+    int feedback_misses_max = kFeedbackMissesMax;  ///< cycles in a row
+    double wrench_age_max_s = kWrenchAgeMax_s;
+    double blind_max_s = kBlindMax_s;  ///< without a sample that guarded moves may see
   };
 
   /// @param kinematics outlives this

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "executor/faults/fault_bounds.h"
+
 namespace tenon::executor {
 namespace {
 
@@ -11,8 +13,6 @@ namespace {
 constexpr double kLags = 3.0;
 // A command that is lost or late is made up for by the next.
 constexpr double kCommandsLost = 4.0;
-// The drive's own watch (6066h) waits for half of this.
-constexpr double kPatience_s = 0.02;
 
 }  // namespace
 
@@ -24,7 +24,7 @@ FollowingWatch::FollowingWatch(const Robot& robot) : joint_count_(robot.joints.s
   const double cycle_s = 1e-6 * robot.cycle_us;
   const double window = std::ceil(kLags * robot.response_lag_s / cycle_s) + kCommandsLost;
   window_ = static_cast<std::size_t>(std::clamp(window, 1.0, static_cast<double>(kWindowMost)));
-  cycles_max_ = static_cast<int>(std::ceil(kPatience_s / cycle_s));
+  cycles_max_ = static_cast<int>(std::ceil(kFollowingPatience_s / cycle_s));
 }
 
 void FollowingWatch::rest_at(const JointVector& position) {

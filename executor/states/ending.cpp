@@ -1,6 +1,5 @@
 #include "executor/states/ending.h"
 
-#include <array>
 #include <cmath>
 
 #include "shared/base/text.h"
@@ -139,79 +138,6 @@ std::string of_a_joint(const Ending& e, const Joint& joint, const Plan& plan) {
 }
 
 }  // namespace
-
-const char* to_string(EndReason reason) {
-  // By the enumerators' values.
-  constexpr std::array kNames = {"none",
-                                 "plan_done",
-                                 "plan_failed",
-                                 "stop_requested",
-                                 "not_at_start",
-                                 "tare_unsteady",
-                                 "tare_moving",
-                                 "contact_on_approach",
-                                 "unreachable",
-                                 "joint_limit",
-                                 "joint_speed",
-                                 "force_fault",
-                                 "torque_fault",
-                                 "sensor_saturated",
-                                 "sensor_not_finite",
-                                 "arm_fault",
-                                 "arm_not_enabled",
-                                 "enable_timeout",
-                                 "feedback_missing",
-                                 "wrench_missing",
-                                 "overruns",
-                                 "other_branch",
-                                 "feedback_poor",
-                                 "measured",
-                                 "nothing_met",
-                                 "brake_failed",
-                                 "following_error",
-                                 "blind"};
-  static_assert(kNames.size() == static_cast<std::size_t>(EndReason::kBlind) + 1);
-  const auto index = static_cast<std::size_t>(reason);
-  return index < kNames.size() ? kNames[index] : "?";
-}
-
-EndManner end_manner(EndReason reason) {
-  switch (reason) {
-    case EndReason::kNone:
-    case EndReason::kPlanDone:
-    case EndReason::kPlanFailed:
-    case EndReason::kNotAtStart:
-    case EndReason::kOtherBranch:
-    case EndReason::kTareUnsteady:
-    case EndReason::kTareMoving:
-    case EndReason::kEnableTimeout:
-    case EndReason::kMeasured:
-    case EndReason::kNothingMet:
-      return EndManner::kHold;
-    case EndReason::kStopRequested:
-    case EndReason::kContactOnApproach:
-      return EndManner::kToolRamp;
-    case EndReason::kUnreachable:
-    case EndReason::kJointLimit:
-    case EndReason::kJointSpeed:
-      return EndManner::kJointRamp;
-    case EndReason::kForceFault:
-    case EndReason::kTorqueFault:
-    case EndReason::kSensorSaturated:
-    case EndReason::kSensorNotFinite:
-    case EndReason::kArmFault:
-    case EndReason::kArmNotEnabled:
-    case EndReason::kFeedbackMissing:
-    case EndReason::kWrenchMissing:
-    case EndReason::kOverruns:
-    case EndReason::kFeedbackPoor:
-    case EndReason::kBrakeFailed:
-    case EndReason::kFollowingError:
-    case EndReason::kBlind:
-      return EndManner::kQuickStop;
-  }
-  return EndManner::kQuickStop;
-}
 
 std::string describe(const Transition& transition) {
   const auto bit = static_cast<std::uint16_t>(transition.index < 0 ? 0 : 1U << transition.index);

@@ -1,0 +1,52 @@
+#pragma once
+// The names of all that may end a run. What each is, is a row of the table (fault_table.h). Plain
+// data, any thread.
+
+#include <cstdint>
+
+namespace tenon::executor {
+
+/// The numbers stand in telemetry.
+enum class EndReason : std::uint8_t {
+  kNone = 0,
+  kPlanDone = 1,
+  kPlanFailed = 2,         ///< index: step; transition says why
+  kStopRequested = 3,      ///< by the user
+  kNotAtStart = 4,         ///< index: axis; value: where the tool is, wanted, bound
+  kTareUnsteady = 5,       ///< index: wrench axis; value: deviation, bound
+  kTareMoving = 6,         ///< index: joint; value: motion while taring, bound
+  kContactOnApproach = 7,  ///< index: wrench axis; value: N or Nm, bound
+  kUnreachable = 8,        ///< the command has no joint positions; value: error left in m or rad
+  kJointLimit = 9,         ///< index: joint; value: position asked for, bound
+  kJointSpeed = 10,        ///< index: joint; value: speed asked for, bound
+  kForceFault = 11,        ///< value: N, bound
+  kTorqueFault = 12,       ///< value: Nm, bound
+  kSensorSaturated = 13,   ///< index: sensor axis; value: reading, bound
+  kSensorNotFinite = 14,
+  kArmFault = 15,         ///< arm_fault
+  kArmNotEnabled = 16,    ///< the arm left the enabled state unasked; index: ArmState
+  kEnableTimeout = 17,    ///< value: s waited
+  kFeedbackMissing = 18,  ///< index: joint; value: cycles in a row, bound
+  kWrenchMissing = 19,    ///< value: s without a sample, bound
+  kOverruns = 20,         ///< value: late cycles; the control loop cannot keep its period
+  kOtherBranch = 21,   ///< the tool is at the start, index: this joint is not; value, wanted, bound
+  kFeedbackPoor = 22,  ///< value: cycles without all of their feedback, too many of all
+  kMeasured = 23,      ///< an identification has all its readings
+  kNothingMet = 24,    ///< by an identification's motion; index: axis; value: way, m, signed
+  kBrakeFailed = 25,   ///< index: joint; value: way that it moved with the drives off, bound
+  kFollowingError = 26,  ///< index: joint; value: m or rad from all that it was commanded, bound
+  kBlind = 27,           ///< value: s without a sample that guarded moves may see, bound
+};
+inline constexpr EndReason kLastEndReason = EndReason::kBlind;
+[[nodiscard]] const char* to_string(EndReason reason);
+
+/// How the motion comes to rest.
+enum class EndManner : std::uint8_t {
+  kHold = 0,       ///< nothing moves, or the plan has come to its own rest
+  kToolRamp = 1,   ///< the tool's setpoint ramps down, compliant
+  kJointRamp = 2,  ///< the joints ramp down: the tool has no way on
+  kQuickStop = 3,  ///< the drives stop by themselves at once
+};
+[[nodiscard]] EndManner end_manner(EndReason reason);
+
+}  // namespace tenon::executor

@@ -1,0 +1,18 @@
+#pragma once
+// The patience of the executor's detectors, said once: the detectors and the table of faults take
+// it from here.
+
+namespace tenon::executor {
+
+inline constexpr int kFeedbackMissesMax = 10;    ///< cycles in a row without a joint's answer
+inline constexpr double kWrenchAgeMax_s = 0.05;  ///< without a new wrench
+inline constexpr double kBlindMax_s = 0.1;       ///< without a sample that guarded moves may see
+inline constexpr double kFollowingPatience_s = 0.02;  ///< 6066h of the drives: half
+inline constexpr double kEnableTimeout_s = 5.0;       ///< for the drives
+inline constexpr double kBrakeWatch_s = 0.5;          ///< after the drives are off
+inline constexpr int kTareSamples = 200;
+inline constexpr int kTouchSamples = 2;           ///< above the threshold that make a contact
+inline constexpr int kLateCyclesMost = 50;        ///< at once
+inline constexpr int kIncompleteCyclesMost = 30;  ///< at once
+
+}  // namespace tenon::executor

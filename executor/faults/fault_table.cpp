@@ -1,0 +1,238 @@
+#include "executor/faults/fault_table.h"
+
+#include <array>
+#include <cmath>
+
+#include "executor/faults/fault_bounds.h"
+#include "shared/base/text.h"
+
+namespace tenon::executor {
+namespace {
+
+constexpr const char* kFromFault = "the fault";
+
+/// An orderly end: nothing was wrong, or the task itself says what was.
+constexpr FaultRow ended(EndReason reason, const char* name, const char* detector,
+                         EndManner reaction = EndManner::kHold) {
+  return {.reason = reason, .name = name, .detector = detector, .reaction = reaction};
+}
+
+constexpr FaultRow fault(EndReason reason, const char* name, const char* detector, FaultBound bound,
+                         const char* since = kFromFault,
+                         EndManner reaction = EndManner::kQuickStop) {
+  return {.reason = reason,
+          .name = name,
+          .detector = detector,
+          .bound = bound,
+          .since = since,
+          .reaction = reaction};
+}
+
+constexpr FaultRow of_arm(ArmFaultKind kind, const char* name, const char* detector,
+                          FaultBound bound, const char* since = kFromFault,
+                          EndState end_state = EndState::kOff) {
+  return {.reason = EndReason::kArmFault,
+          .arm_fault = kind,
+          .name = "arm_fault",
+          .arm_fault_name = name,
+          .detector = detector,
+          .bound = bound,
+          .since = since,
+          .reaction = EndManner::kQuickStop,
+          .end_state = end_state};
+}
+
+// A sample is taken up to a cycle after what it tells, and the decision falls in its cycle.
+constexpr FaultBound kAtOnce{.cycles = 2};
+// More than five in a row (hw/arm), told to the executor in the cycle after.
+constexpr FaultBound kMissing{.cycles = 8};
+
+constexpr std::array kTable = {
+    ended(EndReason::kPlanDone, "plan_done", "plan runner"),
+    ended(EndReason::kPlanFailed, "plan_failed", "plan runner: outcome and envelope of a step"),
+    ended(EndReason::kStopRequested, "stop_requested", "signal", EndManner::kToolRamp),
+    ended(EndReason::kNotAtStart, "not_at_start", "tool's pose after the tare"),
+    fault(EndReason::kTareUnsteady, "tare_unsteady", "tare: deviation of its samples",
+          {.cycles = kTareSamples + 2}, "the tare's first sample", EndManner::kHold),
+    fault(EndReason::kTareMoving, "tare_moving", "tare: way of every joint", kAtOnce,
+          "the way that is too far", EndManner::kHold),
+    fault(EndReason::kContactOnApproach, "contact_on_approach",
+          "wrench beyond the plan's on-thresholds", {.cycles = kTouchSamples + 1}, "the touch",
+          EndManner::kToolRamp),
+    fault(EndReason::kUnreachable, "unreachable", "inverse kinematics of every setpoint",
+          {.cycles = 1}, "the setpoint", EndManner::kJointRamp),
+    fault(EndReason::kJointLimit, "joint_limit", "every setpoint, with the way to rest",
+          {.cycles = 1}, "the setpoint", EndManner::kJointRamp),
+    fault(EndReason::kJointSpeed, "joint_speed", "every setpoint", {.cycles = 1}, "the setpoint",
+          EndManner::kJointRamp),
+    fault(EndReason::kForceFault, "force_fault", "every wrench since the tare", kAtOnce,
+          "the force"),
+    fault(EndReason::kTorqueFault, "torque_fault", "every wrench since the tare", kAtOnce,
+          "the torque"),
+    fault(EndReason::kSensorSaturated, "sensor_saturated", "every wrench", kAtOnce),
+    fault(EndReason::kSensorNotFinite, "sensor_not_finite", "every wrench", kAtOnce),
+    of_arm(ArmFaultKind::kNoAnswer, "no_answer", "bring-up, before anything has power",
+           {.time_s = 1.0}, "the request"),
+    of_arm(ArmFaultKind::kConfiguration, "configuration", "bring-up, before anything has power",
+           {.time_s = 1.0}, "the request"),
+    of_arm(ArmFaultKind::kHeartbeatLost, "heartbeat_lost", "heartbeat of every node",
+           {.cycles = 2, .heartbeat_timeouts = 1}, "the last heartbeat"),
+    of_arm(ArmFaultKind::kUnexpectedReset, "unexpected_reset",
+           "boot-up message, or another state in a heartbeat",
+           {.cycles = 2, .heartbeat_periods = 1}),
+    of_arm(ArmFaultKind::kDriveFault, "drive_fault", "statusword of every cycle, EMCY", kAtOnce,
+           "the drive's own naming it"),
+    of_arm(ArmFaultKind::kDriveState, "drive_state",
+           "statusword of every cycle; while enabling, 2 s", kAtOnce,
+           "the drive's leaving operation enabled"),
+    of_arm(ArmFaultKind::kFeedbackMissing, "feedback_missing",
+           "more than 5 cycles in a row without a joint's answer", kMissing),
+    of_arm(ArmFaultKind::kSensorStale, "sensor_stale",
+           "more than 5 cycles in a row without a new, whole wrench", kMissing),
+    of_arm(ArmFaultKind::kSensorInvalid, "sensor_invalid",
+           "a wrench at the end of its range, EMCY of the sensor", kAtOnce),
+    of_arm(ArmFaultKind::kBusDown, "bus_down", "transport, every cycle", kAtOnce, kFromFault,
+           EndState::kOffByDrives),
+    of_arm(ArmFaultKind::kBusOff, "bus_off", "transport, every cycle", kAtOnce, kFromFault,
+           EndState::kOffByDrives),
+    of_arm(ArmFaultKind::kOtherMaster, "other_master", "every frame that only a master sends",
+           kAtOnce, "the frame"),
+    fault(EndReason::kArmNotEnabled, "arm_not_enabled", "state of the arm, every cycle", kAtOnce),
+    fault(EndReason::kEnableTimeout, "enable_timeout", "state of the arm while it is enabled",
+          {.cycles = 1, .time_s = kEnableTimeout_s}, "the first cycle", EndManner::kHold),
+    fault(EndReason::kFeedbackMissing, "feedback_missing",
+          "cycles in a row without a joint's answer", {.cycles = kFeedbackMissesMax + 2}),
+    fault(EndReason::kWrenchMissing, "wrench_missing", "age of the wrench",
+          {.cycles = 2, .time_s = kWrenchAgeMax_s}),
+    fault(EndReason::kOverruns, "overruns",
+          "leaky bucket of late cycles; one in twenty may be late", {.cycles = kLateCyclesMost + 1},
+          "the first of so many late cycles"),
+    ended(EndReason::kOtherBranch, "other_branch", "joints' positions after the tare"),
+    fault(EndReason::kFeedbackPoor, "feedback_poor",
+          "leaky bucket of cycles without all answers; one in a hundred may be",
+          {.cycles = kIncompleteCyclesMost + 1}, "the first of so many such cycles"),
+    ended(EndReason::kMeasured, "measured", "identification"),
+    ended(EndReason::kNothingMet, "nothing_met", "identification"),
+    FaultRow{.reason = EndReason::kBrakeFailed,
+             .name = "brake_failed",
+             .detector = "joints' positions after the drives are off",
+             .bound = {.cycles = 2, .time_s = kBrakeWatch_s},
+             .since = "the drives' being off",
+             .reaction = EndManner::kQuickStop,
+             .end_state = EndState::kBrakeSlips},
+    fault(EndReason::kFollowingError, "following_error",
+          "every joint against all that it was commanded within three lags",
+          {.cycles = 2, .time_s = kFollowingPatience_s}, "an error beyond its bound"),
+    fault(EndReason::kBlind, "blind", "age of the last sample that guarded moves may see",
+          {.cycles = 2, .time_s = kBlindMax_s}),
+};
+
+constexpr bool every_reason_has_a_row() {
+  std::size_t next = 1;  // kNone has none
+  for (const FaultRow& row : kTable) {
+    const auto reason = static_cast<std::size_t>(row.reason);
+    if (reason == next) ++next;
+    if (reason >= next) return false;
+  }
+  return next == static_cast<std::size_t>(kLastEndReason) + 1;
+}
+static_assert(every_reason_has_a_row());
+static_assert(kTable.size() <= 64, "FaultMask has a bit for each row");
+
+constexpr bool is_bounded(const FaultBound& bound) {
+  return bound.cycles > 0 || bound.time_s > 0.0 || bound.heartbeat_periods > 0 ||
+         bound.heartbeat_timeouts > 0;
+}
+
+void append(std::string& text, int count, const char* what) {
+  if (count == 0) return;
+  text += format("%s%d %s%s", text.empty() ? "" : " and ", count, what, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::span<const FaultRow> fault_table() { return kTable; }
+
+const FaultRow* fault_row(EndReason reason, ArmFaultKind arm_fault) {
+  for (const FaultRow& row : kTable) {
+    if (row.reason == reason && row.arm_fault == arm_fault) return &row;
+  }
+  return nullptr;
+}
+
+const char* to_string(EndReason reason) {
+  if (reason == EndReason::kNone) return "none";
+  for (const FaultRow& row : kTable) {
+    if (row.reason == reason) return row.name;
+  }
+  return "?";
+}
+
+EndManner end_manner(EndReason reason) {
+  if (reason == EndReason::kNone) return EndManner::kHold;
+  for (const FaultRow& row : kTable) {
+    if (row.reason == reason) return row.reaction;
+  }
+  return EndManner::kQuickStop;  // no such reason: the memory is not what it was
+}
+
+std::optional<std::int64_t> bound_cycles(const FaultRow& row, const Robot& robot) {
+  if (!is_bounded(row.bound)) return std::nullopt;
+  const double waited_s = row.bound.time_s +
+                          1e-3 * row.bound.heartbeat_periods * robot.heartbeat_ms +
+                          1e-3 * row.bound.heartbeat_timeouts * robot.heartbeat_timeout_ms;
+  return row.bound.cycles + static_cast<std::int64_t>(std::ceil(1e6 * waited_s / robot.cycle_us));
+}
+
+std::string full_name(const FaultRow& row) {
+  const std::string name = row.name;
+  return row.reason == EndReason::kArmFault ? name + ": " + row.arm_fault_name : name;
+}
+
+std::string to_string(const FaultBound& bound) {
+  std::string text;
+  append(text, bound.heartbeat_timeouts, "heartbeat timeout");
+  append(text, bound.heartbeat_periods, "heartbeat period");
+  if (bound.time_s > 0.0) text += format("%s%g s", text.empty() ? "" : " and ", bound.time_s);
+  append(text, bound.cycles, "cycle");
+  return text;
+}
+
+const char* to_string(EndManner manner) {
+  switch (manner) {
+    case EndManner::kHold:
+      return "hold";
+    case EndManner::kToolRamp:
+      return "tool ramps down";
+    case EndManner::kJointRamp:
+      return "joints ramp down";
+    case EndManner::kQuickStop:
+      return "drives' quick stop";
+  }
+  return "?";
+}
+
+const char* to_string(EndState state) {
+  switch (state) {
+    case EndState::kOff:
+      return "brakes on, power off";
+    case EndState::kOffByDrives:
+      return "the same, by the drives themselves once the heartbeat is missed";
+    case EndState::kBrakeSlips:
+      return "a brake slips; power by the cell's `on_brake_failure`";
+  }
+  return "?";
+}
+
+void FaultMask::mask(EndReason reason, ArmFaultKind arm_fault) {
+  const FaultRow* row = fault_row(reason, arm_fault);
+  if (row != nullptr) rows_.set(static_cast<std::size_t>(row - kTable.data()));
+}
+
+bool FaultMask::masks(EndReason reason, ArmFaultKind arm_fault) const {
+  if (rows_.none()) return false;
+  const FaultRow* row = fault_row(reason, arm_fault);
+  return row != nullptr && rows_.test(static_cast<std::size_t>(row - kTable.data()));
+}
+
+}  // namespace tenon::executor
