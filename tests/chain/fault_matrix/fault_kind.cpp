@@ -1,0 +1,126 @@
+#include "tests/chain/fault_matrix/fault_kind.h"
+
+#include <utility>
+
+namespace tenon::tests {
+namespace {
+
+using executor::EndReason;
+using executor::fault_row;
+using Names = std::vector<const executor::FaultRow*>;
+
+const executor::FaultRow* arm(ArmFaultKind kind) { return fault_row(EndReason::kArmFault, kind); }
+
+/// A joint that stays behind is named for that, or, in a contact, for what the others press with or
+/// come to without it.
+Names stays_behind() {
+  return {fault_row(EndReason::kFollowingError), fault_row(EndReason::kForceFault),
+          fault_row(EndReason::kTorqueFault), fault_row(EndReason::kPlanFailed)};
+}
+
+/// The servo moves the axis by what its encoder misreads: its own error, or what that does.
+Names jumps() {
+  return {arm(ArmFaultKind::kDriveFault),     fault_row(EndReason::kFollowingError),
+          fault_row(EndReason::kTareMoving),  fault_row(EndReason::kForceFault),
+          fault_row(EndReason::kTorqueFault), fault_row(EndReason::kSensorSaturated),
+          arm(ArmFaultKind::kSensorInvalid)};
+}
+
+/// As tenon-sim --fault brings it about.
+FaultKind spec(const char* name, const char* text, Names names) {
+  return {name, Act::kSpec, text, std::move(names), false, false};
+}
+
+std::vector<FaultKind> kinds_of_the_bus() {
+  const Names missing = {arm(ArmFaultKind::kFeedbackMissing)};
+  const Names stale = {arm(ArmFaultKind::kSensorStale)};
+  const Names behind = stays_behind();
+  return {
+      spec("a frame dropped", "drop:node=JOINT", {}),
+      spec("frames dropped", "drop:node=JOINT,duration_s=100", missing),
+      spec("frames delayed", "delay:node=JOINT,duration_s=100,delay_s=0.0012,id=answers", missing),
+      // All frames twice would be more than the bus carries.
+      spec("frames duplicated", "duplicate:node=JOINT,duration_s=100", {}),
+      spec("frames short", "corrupt-length:node=SENSOR,duration_s=100,id=answers", stale),
+      spec("heartbeat lost", "drop:node=JOINT,duration_s=100,id=heartbeat",
+           {arm(ArmFaultKind::kHeartbeatLost)}),
+      spec("queue full", "queue-full:node=127,duration_s=100",
+           {arm(ArmFaultKind::kFeedbackMissing), arm(ArmFaultKind::kSensorStale)}),
+      spec("bus-off", "bus-off:node=127", {arm(ArmFaultKind::kBusOff)}),
+      spec("interface down", "interface-down", {arm(ArmFaultKind::kBusDown)}),
+      spec("answers lost", "drop:node=JOINT,duration_s=100,id=answers", missing),
+      spec("RPDOs lost", "drop:node=JOINT,duration_s=100,id=rpdo", behind),
+      {"another master", Act::kOtherMaster, "", {arm(ArmFaultKind::kOtherMaster)}, false, false},
+  };
+}
+
+std::vector<FaultKind> kinds_of_devices() {
+  const Names behind = stays_behind();
+  const Names stale = {arm(ArmFaultKind::kSensorStale)};
+  return {
+      spec("node reset", "node-reset:node=JOINT", {arm(ArmFaultKind::kUnexpectedReset)}),
+      spec("emergency", "emergency:node=JOINT,code=0x3210", {arm(ArmFaultKind::kDriveFault)}),
+      spec("force torn", "torn-force:duration_s=100", stale),
+      spec("force stale", "stale-force:duration_s=100", stale),
+      spec("force saturated", "saturated-force:duration_s=100",
+           {arm(ArmFaultKind::kSensorInvalid), fault_row(EndReason::kSensorSaturated)}),
+      spec("force beyond its limit", "forged-force:force_N=80",
+           {fault_row(EndReason::kForceFault)}),
+      {"encoder jump", Act::kSpec, "encoder-jump:node=JOINT,JUMP", jumps(), false, true},
+      spec("drive does not follow", "frozen-drive:node=JOINT", behind),
+      spec("brake failed", "brake-failure:node=VERTICAL", {fault_row(EndReason::kBrakeFailed)}),
+  };
+}
+
+std::vector<FaultKind> kinds_of_the_executor() {
+  return {
+      {"setpoints not finite", Act::kNotFinite, "", stays_behind(), false, false},
+      {"SIGSTOP",
+       Act::kPause,
+       "",
+       {arm(ArmFaultKind::kDriveState), arm(ArmFaultKind::kDriveFault),
+        arm(ArmFaultKind::kUnexpectedReset), arm(ArmFaultKind::kHeartbeatLost),
+        fault_row(EndReason::kOverruns)},
+       false,
+       false},
+      {"SIGKILL", Act::kKill, "", {}, false, false},
+      {"late wake-ups",
+       Act::kLate,
+       "",
+       {fault_row(EndReason::kOverruns), fault_row(EndReason::kBlind)},
+       false,
+       false},
+      {"joint limit", Act::kJointLimit, "", {fault_row(EndReason::kJointLimit)}, true, false},
+      {"unexpected contact", Act::kObstacle, "", {fault_row(EndReason::kPlanFailed)}, true, false},
+  };
+}
+
+}  // namespace
+
+std::vector<FaultKind> fault_kinds() {
+  std::vector<FaultKind> all = kinds_of_the_bus();
+  for (auto part : {kinds_of_devices(), kinds_of_the_executor()}) {
+    for (FaultKind& kind : part) all.push_back(std::move(kind));
+  }
+  return all;
+}
+
+std::string spec_for(const FaultKind& kind, const Robot& robot) {
+  const bool turns = robot.joints.front().kind == Joint::Kind::kRevolute;
+  const std::pair<const char*, std::string> words[] = {
+      {"JOINT", std::to_string(robot.joints.front().node)},
+      {"SENSOR", std::to_string(robot.sensor.node)},
+      // The gantry's z, the other arm's shoulder.
+      {"VERTICAL", std::to_string(robot.joints[turns ? 1 : 2].node)},
+      // Twice what the drive's following error allows.
+      {"JUMP", turns ? "jump_rad=0.04" : "jump_m=0.01"},
+  };
+  std::string text = kind.spec;
+  for (const auto& [word, value] : words) {
+    const std::size_t at = text.find(word);
+    if (at != std::string::npos) text.replace(at, std::string(word).size(), value);
+  }
+  return text;
+}
+
+}  // namespace tenon::tests
