@@ -1,0 +1,174 @@
+#include "tests/chain/fault_matrix/driven_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "shared/base/text.h"
+#include "sim/cell/faults/fault_spec.h"
+#include "tests/support/faulty_options.h"
+
+namespace tenon::tests {
+namespace {
+
+using executor::State;
+using sim::FaultPhase;
+
+constexpr std::int64_t kStopAfter_ns = 300'000'000;  // of free motion, for the phase of stopping
+constexpr std::int64_t kLater_ns = 400'000'000;
+constexpr std::int64_t kPause_ns = 1'000'000'000;
+// A masked detector may leave a run without an end.
+constexpr std::int64_t kCyclesMost = 15'000;
+
+}  // namespace
+
+Ground::Ground(const std::string& cell_name)
+    : cell(shipped_cell(cell_name)),
+      planned(planned_box(cell, "1")),
+      dry_run(executor::dry_run(planned.plan, cell)) {
+  WholeRun run(cell, planned.task, planned.plan, with_faults({}));
+  const auto moment = [&] {
+    const sim::Truth truth = run.result().truth;
+    Moment now;
+    for (std::size_t i = 0; i < truth.drives.size(); ++i) now.joints[i] = truth.drives[i].position;
+    now.tool_m = truth.tool.position_m;
+    return now;
+  };
+  start = moment().joints;
+  if (!run.prepare()) return;
+  std::array<int, sim::kFaultPhases> taken{};
+  while (run.cycle()) {
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      const auto began_ns = run.phases().began_ns(static_cast<FaultPhase>(i));
+      if (began_ns && taken[i] == 0) {
+        begins[i] = moment();
+        taken[i] = 1;
+      } else if (began_ns && taken[i] == 1 && run.now_ns() - *began_ns > kLater_ns) {
+        later[i] = moment();
+        taken[i] = 2;
+      }
+    }
+  }
+}
+
+double Ground::force_most_N() const {
+  double speed_mps = 0.0;
+  for (const ParameterSet& set : planned.plan.parameter_sets) {
+    speed_mps = std::max({speed_mps, set.speeds.approach_mps, set.speeds.contact_mps});
+  }
+  const double noticed_s = 2e-6 * cell.robot.cycle_us + cell.robot.response_lag_s;
+  return cell.force_fault_N + cell.contact_stiffness_Npm * speed_mps * noticed_s;
+}
+
+DrivenRun::Altered DrivenRun::altered(const Ground& ground, const FaultKind& kind,
+                                      FaultPhase phase) {
+  Altered world{ground.cell, ground.planned.task};
+  const Ground::Moment& from = ground.begins[static_cast<std::size_t>(phase)];
+  const Ground::Moment& to = ground.later[static_cast<std::size_t>(phase)];
+  if (kind.act == Act::kJointLimit) {
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < world.cell.robot.joints.size(); ++i) {
+      if (std::abs(to.joints[i] - from.joints[i]) > std::abs(to.joints[most] - from.joints[most])) {
+        most = i;
+      }
+    }
+    Joint& joint = world.cell.robot.joints[most];
+    const double limit = 0.5 * (from.joints[most] + to.joints[most]);
+    (to.joints[most] > from.joints[most] ? joint.upper : joint.lower) = limit;
+  }
+  if (kind.act == Act::kObstacle) {
+    constexpr double kEdge_m = 0.05;
+    const Vector3 way = to.tool_m - from.tool_m;
+    const int axis = std::abs(way.x()) > std::abs(way.y()) ? 0 : 1;
+    Shape post{"post", Shape::Kind::kBox, Vector3::Constant(kEdge_m), {}};
+    post.pose.position_m = from.tool_m + 0.5 * way;
+    post.pose.position_m[axis] +=
+        std::copysign(0.5 * (world.task.held.front().size_m[axis] + kEdge_m), way[axis]);
+    post.pose.position_m.z() = 0.05;
+    world.task.environment.push_back(post);
+  }
+  return world;
+}
+
+DrivenRun::DrivenRun(const Ground& ground, const FaultKind& kind, const Strike& strike)
+    : kind_(kind),
+      strike_(strike),
+      world_(altered(ground, kind, strike.phase)),
+      watch_(world_.cell, kind.spec.find("force") != std::string::npos,
+             [this] { return run_.result().truth; }),
+      run_(world_.cell, world_.task, ground.planned.plan, options(ground), &watch_),
+      third_(run_.bus().attach()),
+      rest_(world_.cell.robot) {}
+
+void DrivenRun::drive() {
+  if (kind_.act == Act::kPause || kind_.act == Act::kLate) {
+    (void)run_.run_on_clock([this](std::int64_t) { return before_a_cycle(); });
+  } else if (run_.prepare()) {
+    bool more = true;
+    while (more && watch_.cycles() < kCyclesMost) {
+      (void)before_a_cycle();
+      if (kind_.act == Act::kKill && watch_.has_struck()) break;
+      more = run_.cycle();
+    }
+  }
+  // More than the heartbeat's timeout, the longest ramp and a brake.
+  for (int i = 0; i < 150; ++i) {
+    run_.leave_alone(0.01);
+    rest_.look(run_.result().truth);
+  }
+}
+
+WholeRun::Options DrivenRun::options(const Ground& ground) {
+  std::vector<std::string> specs;
+  if (kind_.act == Act::kSpec) {
+    const std::string text = spec_for(kind_, world_.cell.robot);
+    const char* first = text.find(':') == std::string::npos ? ":" : ",";
+    specs.push_back(text + first + "at=" + sim::to_string(strike_.phase) +
+                    format(",time_s=%g", strike_.after_s));
+  }
+  WholeRun::Options options = with_faults(specs);
+  options.controller.masked = strike_.mask;
+  options.seed = strike_.seed;
+  options.offset = strike_.offset;
+  options.joints = ground.start;
+  options.dry_run = ground.dry_run;
+  if (kind_.act == Act::kNotFinite) {
+    options.tamper = [this](JointVector& position) {
+      if (watch_.has_struck()) position.fill(std::numeric_limits<double>::quiet_NaN());
+    };
+  }
+  return options;
+}
+
+std::int64_t DrivenRun::before_a_cycle() {
+  const std::int64_t now_ns = run_.now_ns();
+  if (run_.controller().state() >= State::kHolding) rest_.look(run_.result().truth);
+  if (strike_.phase == FaultPhase::kStopping) {
+    const auto free_ns = run_.phases().began_ns(FaultPhase::kFree);
+    if (free_ns && now_ns - *free_ns > kStopAfter_ns) run_.controller().request_stop();
+    if (run_.controller().state() == State::kStopping) {
+      run_.phases().begin(FaultPhase::kStopping, now_ns);
+    }
+  }
+  const auto began_ns = run_.phases().began_ns(strike_.phase);
+  if (!began_ns || now_ns < *began_ns + static_cast<std::int64_t>(1e9 * strike_.after_s)) return 0;
+  const bool first = !watch_.has_struck();
+  // What happens before a cycle can first be seen in it; a pause, in the one after it.
+  watch_.struck(kind_.act == Act::kSpec);
+  if (first && kind_.act == Act::kOtherMaster) (void)third_.send(CanFrame{.id = 0x080});
+  if (first && kind_.act == Act::kPause) return kPause_ns;
+  const std::int64_t cycle_ns = std::int64_t{1000} * world_.cell.robot.cycle_us;
+  return kind_.act == Act::kLate ? cycle_ns + cycle_ns / 2 : 0;
+}
+
+bool DrivenRun::black_box_is_whole() {
+  const executor::BlackBox& box = run_.runner().black_box();
+  if (box.size() == 0) return false;
+  for (std::size_t i = 1; i < box.size(); ++i) {
+    if (box.at(i).sequence != box.at(i - 1).sequence + 1) return false;
+  }
+  const executor::CycleRecord& last = box.at(box.size() - 1);
+  return last.end_reason == static_cast<std::uint8_t>(run_.result().ending.reason);
+}
+
+}  // namespace tenon::tests

@@ -1,0 +1,85 @@
+#pragma once
+// A whole run in which a fault of a kind strikes in a phase, driven cycle by cycle.
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "executor/dry_run/dry_run.h"
+#include "executor/faults/fault_table.h"
+#include "sim/cell/faults/fault_phases.h"
+#include "tests/chain/fault_matrix/fault_kind.h"
+#include "tests/chain/fault_matrix/fault_watch.h"
+#include "tests/support/planned.h"
+#include "tests/support/rest_watch.h"
+#include "tests/support/whole_run.h"
+
+namespace tenon::tests {
+
+/// A robot, its plan, and where a run without faults is when a phase begins and a little later.
+struct Ground {
+  explicit Ground(const std::string& cell_name);
+
+  /// What a stop on force may come to: the bound, and what the stiffest contact adds at the plan's
+  /// greatest speed until it is noticed and acted on.
+  [[nodiscard]] double force_most_N() const;
+
+  struct Moment {
+    JointVector joints{};
+    Vector3 tool_m = Vector3::Zero();  ///< task frame, of the environment as it stands
+  };
+  Cell cell;
+  Planned planned;
+  executor::DryRun dry_run;
+  JointVector start{};
+  std::array<Moment, sim::kFaultPhases> begins{};
+  std::array<Moment, sim::kFaultPhases> later{};  ///< 0.4 s after that
+};
+
+/// Where and when a fault strikes.
+struct Strike {
+  sim::FaultPhase phase = sim::FaultPhase::kFree;
+  double after_s = 0.02;       ///< from when the phase began
+  executor::FaultMask mask{};  ///< of detectors that are off
+  std::uint64_t seed = 1;      ///< of the sensor's noise
+  Vector6 offset = (Vector6() << 0.01, -0.01, 0.0, 0.0, 0.0, 0.0).finished();
+};
+
+/// Use it on one thread. Ground and kind must outlive it.
+class DrivenRun {
+ public:
+  DrivenRun(const Ground& ground, const FaultKind& kind, const Strike& strike);
+
+  /// To the run's end, and until all rests.
+  void drive();
+
+  [[nodiscard]] const FaultWatch& watch() const { return watch_; }
+  [[nodiscard]] const RestWatch& rest() const { return rest_; }
+  [[nodiscard]] WholeRun::Result result() const { return run_.result(); }
+  /// The black box's last record tells the run's end, and none is missing before it.
+  [[nodiscard]] bool black_box_is_whole();
+
+ private:
+  [[nodiscard]] WholeRun::Options options(const Ground& ground);
+  /// Stops, strikes. @return by how much the loop wakes up late, ns
+  std::int64_t before_a_cycle();
+
+  /// The cell and the task that the run meets where the fault is one of them.
+  struct Altered {
+    Cell cell;
+    Task task;
+  };
+
+  [[nodiscard]] static Altered altered(const Ground& ground, const FaultKind& kind,
+                                       sim::FaultPhase phase);
+
+  const FaultKind& kind_;
+  Strike strike_;
+  Altered world_;
+  FaultWatch watch_;
+  WholeRun run_;
+  CanBus& third_;
+  RestWatch rest_;
+};
+
+}  // namespace tenon::tests

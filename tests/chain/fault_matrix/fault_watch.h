@@ -1,0 +1,130 @@
+#pragma once
+// Watches a run cycle by cycle: when a fault can be seen, and when the run ends for one.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "executor/faults/fault_table.h"
+#include "executor/record/cycle_record.h"
+#include "executor/record/cycle_sink.h"
+#include "shared/cell/cell.h"
+#include "sim/cell/virtual_arm/truth.h"
+
+namespace tenon::tests {
+
+/// Watches every cycle: when a fault can be seen, and when the run ends for one. Counts from 1.
+class FaultWatch final : public executor::CycleSink {
+ public:
+  /// @param of_sensor the fault is the sensor's: what it tells is false
+  FaultWatch(const Cell& cell, bool of_sensor, std::function<sim::Truth()> truth)
+      : robot_(cell.robot),
+        force_fault_N_(cell.force_fault_N),
+        of_sensor_(of_sensor),
+        truth_(std::move(truth)) {
+    const double lags = 3.0 * robot_.response_lag_s / (1e-6 * robot_.cycle_us);
+    window_ = static_cast<std::size_t>(std::ceil(lags)) + 4;
+  }
+
+  /// The fault has struck: in the cycle that is over, or will do so in the next.
+  void struck(bool in_the_last) {
+    if (struck_) return;
+    struck_ = in_the_last ? cycles_ : cycles_ + 1;
+    if (in_the_last) look_at_the_truth();
+  }
+  void record(const executor::CycleRecord& r) noexcept override {
+    ++cycles_;
+    if (struck_ && !behind_ && behind(r)) behind_ = cycles_;
+    if (struck_) look_at_the_truth();
+    const bool on = r.arm_state == ArmState::kEnabled && r.request == ArmRequest::kEnabled;
+    for (std::size_t i = 0; on && was_on_ && i < robot_.joints.size(); ++i) {
+      const double way = std::abs(r.position_commanded[i] - commands_.front()[i]);
+      const double most = 1e-6 * robot_.cycle_us * robot_.joints[i].speed_max;
+      fastest_ = std::max(fastest_, way / most);
+    }
+    was_on_ = on;
+    commands_.push_front(r.position_commanded);
+    if (commands_.size() > window_) commands_.pop_back();
+    const auto reason = static_cast<executor::EndReason>(r.end_reason);
+    const bool ended = reason != executor::EndReason::kNone &&
+                       reason != executor::EndReason::kStopRequested &&
+                       reason != executor::EndReason::kPlanDone;
+    if (ended && !named_) named_ = cycles_;
+    if (r.state == executor::State::kWatching && !off_) off_ = cycles_;
+    if (r.state > executor::State::kTaring && r.state <= executor::State::kHolding && !tared_)
+      tared_ = cycles_;
+  }
+
+  /// Where the bound of a row counts from; unset: that never was, or only the executor can tell.
+  [[nodiscard]] std::optional<std::int64_t> since(const executor::FaultRow& row) const {
+    using enum executor::EndReason;
+    const executor::EndReason reason = row.reason;
+    if (reason == kFollowingError) return behind_;
+    if (reason == kBrakeFailed) return off_;
+    if (row.arm_fault == ArmFaultKind::kDriveFault || row.arm_fault == ArmFaultKind::kDriveState) {
+      return left_;
+    }
+    // What is there while the sensor is tared is no force.
+    const bool forged = of_sensor_ && struck_ && tared_ && *tared_ <= *struck_;
+    if (reason == kForceFault) return forged ? struck_ : pressed_;
+    const bool of_wrench = reason == kTorqueFault || reason == kSensorSaturated ||
+                           row.arm_fault == ArmFaultKind::kSensorInvalid;
+    const bool inside = reason == kJointLimit || reason == kPlanFailed || reason == kTareMoving;
+    return inside || (of_wrench && !of_sensor_) ? std::nullopt : struck_;
+  }
+  [[nodiscard]] std::optional<std::int64_t> named() const { return named_; }
+  [[nodiscard]] std::optional<std::int64_t> off() const { return off_; }
+  /// The greatest speed commanded to an enabled joint, of its own.
+  [[nodiscard]] double fastest() const { return fastest_; }
+  [[nodiscard]] bool has_struck() const { return struck_.has_value(); }
+  [[nodiscard]] std::int64_t cycles() const { return cycles_; }
+
+ private:
+  void look_at_the_truth() {
+    if (left_ && pressed_) return;
+    const sim::Truth truth = truth_();
+    // What a drive shows that is neither being enabled nor enabled.
+    const bool left =
+        std::any_of(truth.drives.begin(), truth.drives.end(), [](const sim::DriveTruth& drive) {
+          return drive.state != "operation enabled" && drive.state != "switched on" &&
+                 drive.state != "ready to switch on";
+        });
+    if (left && !left_) left_ = cycles_;
+    if (truth.contact_force_N_max > force_fault_N_ && !pressed_) pressed_ = cycles_;
+  }
+  [[nodiscard]] bool behind(const executor::CycleRecord& r) const {
+    for (std::size_t i = 0; i < robot_.joints.size(); ++i) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const JointVector& command : commands_) {
+        nearest = std::min(nearest, std::abs(command[i] - r.position[i]));
+      }
+      if (!commands_.empty() && nearest > robot_.joints[i].following_error_max) return true;
+    }
+    return false;
+  }
+
+  const Robot& robot_;
+  double force_fault_N_;
+  bool was_on_ = false;
+  double fastest_ = 0.0;
+  bool of_sensor_;
+  std::function<sim::Truth()> truth_;
+  std::size_t window_;
+  std::deque<JointVector> commands_;
+  std::int64_t cycles_ = 0;
+  std::optional<std::int64_t> struck_;
+  std::optional<std::int64_t> behind_;
+  std::optional<std::int64_t> left_;
+  std::optional<std::int64_t> pressed_;
+  std::optional<std::int64_t> tared_;
+  std::optional<std::int64_t> named_;
+  std::optional<std::int64_t> off_;
+};
+
+}  // namespace tenon::tests

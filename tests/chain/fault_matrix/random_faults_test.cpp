@@ -1,0 +1,122 @@
+// A fault drawn at random, in a phase and a world drawn at random, with a magnitude between a tenth
+// and ten times what a detector lets pass: the run is done and right, or stopped by a name and in
+// its brakes. Below a detector's threshold the forged amount counts as allowed.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "shared/base/random.h"
+#include "shared/base/text.h"
+#include "sim/cell/virtual_arm/environment_offset.h"
+#include "sim/evaluation/statistics.h"
+#include "tests/chain/fault_matrix/driven_run.h"
+
+namespace tenon::tests {
+namespace {
+
+using executor::EndReason;
+using sim::FaultPhase;
+
+/// A kind whose magnitude is drawn.
+struct Scaled {
+  const char* spec;  ///< the magnitude follows
+  double threshold;  ///< that a detector, or the plan's tolerance, lets pass
+  enum class Forges { kNothing, kPosition, kForce } forges = Forges::kNothing;
+};
+
+// Thresholds: five cycles without an answer or a wrench; the feedback's deadline; one cycle in a
+// hundred without all answers; 20 ms of a following error; the cell's force; the joint's following
+// error; the heartbeat's timeout.
+constexpr Scaled kScaled[] = {
+    {"drop:node=JOINT,id=answers,duration_s=", 0.010},
+    {"drop:node=SENSOR,id=answers,duration_s=", 0.010},
+    {"stale-force:duration_s=", 0.010},
+    {"torn-force:duration_s=", 0.010},
+    {"delay:node=JOINT,id=answers,duration_s=100,delay_s=", 0.0014},
+    {"drop:duration_s=100,probability=", 0.01},
+    {"frozen-drive:node=JOINT,duration_s=", 0.020},
+    {"forged-force:duration_s=0.02,force_N=", 60.0, Scaled::Forges::kForce},
+    {"encoder-jump:node=JOINT,jump_m=", 0.005, Scaled::Forges::kPosition},
+    {"drop:node=127,id=heartbeat,duration_s=", 0.3},
+    {"drop:node=JOINT,id=heartbeat,duration_s=", 0.3},
+    {"drop:node=JOINT,id=rpdo,duration_s=", 0.020},
+    {"queue-full:node=127,duration_s=", 0.010},
+};
+
+struct Tally {
+  int done = 0;
+  int stopped = 0;
+  int wrong = 0;
+  std::map<std::string, int> names;
+};
+
+/// @param number of the run: all that is drawn follows from it
+void run_drawn(const Ground& ground, std::uint64_t number, Tally& tally) {
+  Random random(stream_seed(number, "random_fault"));
+  const auto below = [&](std::size_t count) {
+    return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
+  };
+  const Scaled& scaled = kScaled[below(std::size(kScaled))];
+  const auto phase = static_cast<FaultPhase>(below(sim::kFaultPhases));
+  const double magnitude = scaled.threshold * std::pow(10.0, 2.0 * random.uniform() - 1.0);
+  FaultKind kind;
+  kind.spec = scaled.spec + format("%g", magnitude);
+  Strike strike;
+  strike.phase = phase;
+  strike.after_s = 0.3 * random.uniform();
+  strike.seed = number;
+  const Task& task = ground.planned.task;
+  strike.offset = sim::draw_offset(task.starts.front(), task.coordinates, number);
+
+  DrivenRun run(ground, kind, strike);
+  run.drive();
+  const WholeRun::Result result = run.result();
+  const std::string what = "run " + std::to_string(number) + ": " + kind.spec + " at " +
+                           std::to_string(static_cast<int>(phase)) + ": " + result.reason;
+  EXPECT_EQ(run.rest().complaints(), "") << what;
+  EXPECT_NE(result.ending.reason, EndReason::kNone) << what;
+  if (result.ending.reason != EndReason::kPlanDone) {
+    ++tally.stopped;
+    ++tally.names[executor::to_string(result.ending.reason)];
+    return;
+  }
+  // A force that is forged pushes the compliant tool by it over its stiffness.
+  const double soft_Npm = ground.planned.plan.compliance.stiffness_Npm;
+  double forged_m = 0.0;
+  if (scaled.forges == Scaled::Forges::kPosition) forged_m = magnitude;
+  if (scaled.forges == Scaled::Forges::kForce) forged_m = magnitude / soft_Npm;
+  const bool right = result.truth.error_norm_m <= task.goal_tolerance_m + forged_m;
+  right ? ++tally.done : ++tally.wrong;
+  EXPECT_TRUE(right) << what
+                     << format("; %.2f mm off, %.2f of them forged",
+                               1e3 * result.truth.error_norm_m, 1e3 * forged_m);
+}
+
+void run_all_drawn(std::uint64_t count) {
+  const Ground ground("gantry3");
+  Tally tally;
+  for (std::uint64_t number = 1; number <= count; ++number) run_drawn(ground, number, tally);
+  const sim::Interval wrong = sim::wilson_interval(static_cast<std::size_t>(tally.wrong), count);
+  std::printf(
+      "%d runs: %d done, %d stopped by name, %d done but wrong, at most %.2f %% of all "
+      "(Wilson, 95 %%)\n",
+      static_cast<int>(count), tally.done, tally.stopped, tally.wrong, 100.0 * wrong.high);
+  for (const auto& [name, times] : tally.names) std::printf("  %s: %d\n", name.c_str(), times);
+  EXPECT_EQ(tally.wrong, 0);
+  EXPECT_GT(tally.done, 0);
+  EXPECT_GT(tally.stopped, 0);
+}
+
+TEST(RandomFaults, AHundredAreRiddenOutOrNamed) { run_all_drawn(100); }
+
+TEST(ManyRandomFaults, TwoThousandAreRiddenOutOrNamed) { run_all_drawn(2000); }
+
+}  // namespace
+}  // namespace tenon::tests
