@@ -28,13 +28,45 @@ constexpr FaultRow fault(EndReason reason, const char* name, const char* detecto
           .reaction = reaction};
 }
 
-constexpr FaultRow of_arm(ArmFaultKind kind, const char* name, const char* detector,
-                          FaultBound bound, const char* since = kFromFault,
-                          EndState end_state = EndState::kOff) {
+/// Null: there is no such fault.
+constexpr const char* arm_fault_name(ArmFaultKind kind) {
+  switch (kind) {
+    case ArmFaultKind::kNone:
+      return nullptr;
+    case ArmFaultKind::kNoAnswer:
+      return "no_answer";
+    case ArmFaultKind::kConfiguration:
+      return "configuration";
+    case ArmFaultKind::kHeartbeatLost:
+      return "heartbeat_lost";
+    case ArmFaultKind::kUnexpectedReset:
+      return "unexpected_reset";
+    case ArmFaultKind::kDriveFault:
+      return "drive_fault";
+    case ArmFaultKind::kDriveState:
+      return "drive_state";
+    case ArmFaultKind::kFeedbackMissing:
+      return "feedback_missing";
+    case ArmFaultKind::kSensorStale:
+      return "sensor_stale";
+    case ArmFaultKind::kSensorInvalid:
+      return "sensor_invalid";
+    case ArmFaultKind::kBusDown:
+      return "bus_down";
+    case ArmFaultKind::kBusOff:
+      return "bus_off";
+    case ArmFaultKind::kOtherMaster:
+      return "other_master";
+  }
+  return nullptr;
+}
+
+constexpr FaultRow of_arm(ArmFaultKind kind, const char* detector, FaultBound bound,
+                          const char* since = kFromFault, EndState end_state = EndState::kOff) {
   return {.reason = EndReason::kArmFault,
           .arm_fault = kind,
           .name = "arm_fault",
-          .arm_fault_name = name,
+          .arm_fault_name = arm_fault_name(kind),
           .detector = detector,
           .bound = bound,
           .since = since,
@@ -71,32 +103,30 @@ constexpr std::array kTable = {
           "the torque"),
     fault(EndReason::kSensorSaturated, "sensor_saturated", "every wrench", kAtOnce),
     fault(EndReason::kSensorNotFinite, "sensor_not_finite", "every wrench", kAtOnce),
-    of_arm(ArmFaultKind::kNoAnswer, "no_answer", "bring-up, before anything has power",
-           {.time_s = 1.0}, "the request"),
-    of_arm(ArmFaultKind::kConfiguration, "configuration", "bring-up, before anything has power",
-           {.time_s = 1.0}, "the request"),
-    of_arm(ArmFaultKind::kHeartbeatLost, "heartbeat_lost", "heartbeat of every node",
+    of_arm(ArmFaultKind::kNoAnswer, "bring-up, before anything has power", {.time_s = 1.0},
+           "the request"),
+    of_arm(ArmFaultKind::kConfiguration, "bring-up, before anything has power", {.time_s = 1.0},
+           "the request"),
+    of_arm(ArmFaultKind::kHeartbeatLost, "heartbeat of every node",
            {.cycles = 2, .heartbeat_timeouts = 1}, "the last heartbeat"),
-    of_arm(ArmFaultKind::kUnexpectedReset, "unexpected_reset",
-           "boot-up message, or another state in a heartbeat",
+    of_arm(ArmFaultKind::kUnexpectedReset, "boot-up message, or another state in a heartbeat",
            {.cycles = 2, .heartbeat_periods = 1}),
-    of_arm(ArmFaultKind::kDriveFault, "drive_fault", "statusword of every cycle, EMCY", kAtOnce,
+    of_arm(ArmFaultKind::kDriveFault, "statusword of every cycle, EMCY", kAtOnce,
            "the drive's own naming it"),
-    of_arm(ArmFaultKind::kDriveState, "drive_state",
-           "statusword of every cycle; while enabling, 2 s", kAtOnce,
+    of_arm(ArmFaultKind::kDriveState, "statusword of every cycle; while enabling, 2 s", kAtOnce,
            "the drive's leaving operation enabled"),
-    of_arm(ArmFaultKind::kFeedbackMissing, "feedback_missing",
-           "more than 5 cycles in a row without a joint's answer", kMissing),
-    of_arm(ArmFaultKind::kSensorStale, "sensor_stale",
-           "more than 5 cycles in a row without a new, whole wrench", kMissing),
-    of_arm(ArmFaultKind::kSensorInvalid, "sensor_invalid",
-           "a wrench at the end of its range, EMCY of the sensor", kAtOnce),
-    of_arm(ArmFaultKind::kBusDown, "bus_down", "transport, every cycle", kAtOnce, kFromFault,
+    of_arm(ArmFaultKind::kFeedbackMissing, "more than 5 cycles in a row without a joint's answer",
+           kMissing),
+    of_arm(ArmFaultKind::kSensorStale, "more than 5 cycles in a row without a new, whole wrench",
+           kMissing),
+    of_arm(ArmFaultKind::kSensorInvalid, "a wrench at the end of its range, EMCY of the sensor",
+           kAtOnce),
+    of_arm(ArmFaultKind::kBusDown, "transport, every cycle", kAtOnce, kFromFault,
            EndState::kOffByDrives),
-    of_arm(ArmFaultKind::kBusOff, "bus_off", "transport, every cycle", kAtOnce, kFromFault,
+    of_arm(ArmFaultKind::kBusOff, "transport, every cycle", kAtOnce, kFromFault,
            EndState::kOffByDrives),
-    of_arm(ArmFaultKind::kOtherMaster, "other_master", "every frame that only a master sends",
-           kAtOnce, "the frame"),
+    of_arm(ArmFaultKind::kOtherMaster, "every frame that only a master sends", kAtOnce,
+           "the frame"),
     fault(EndReason::kArmNotEnabled, "arm_not_enabled", "state of the arm, every cycle", kAtOnce),
     fault(EndReason::kEnableTimeout, "enable_timeout", "state of the arm while it is enabled",
           {.cycles = 1, .time_s = kEnableTimeout_s}, "the first cycle", EndManner::kHold),
@@ -137,6 +167,16 @@ constexpr bool every_reason_has_a_row() {
   return next == static_cast<std::size_t>(kLastEndReason) + 1;
 }
 static_assert(every_reason_has_a_row());
+
+constexpr bool every_fault_of_the_arm_has_a_row() {
+  for (int kind = 1; arm_fault_name(static_cast<ArmFaultKind>(kind)) != nullptr; ++kind) {
+    bool found = false;
+    for (const FaultRow& row : kTable) found = found || static_cast<int>(row.arm_fault) == kind;
+    if (!found) return false;
+  }
+  return true;
+}
+static_assert(every_fault_of_the_arm_has_a_row());
 static_assert(kTable.size() <= 64, "FaultMask has a bit for each row");
 
 constexpr bool is_bounded(const FaultBound& bound) {

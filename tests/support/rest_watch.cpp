@@ -43,11 +43,12 @@ bool RestWatch::held() const {
   return !axes_.empty();
 }
 
-std::string RestWatch::complaints() const {
+std::string RestWatch::complaints(double forged) const {
   std::string all;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const Axis& axis = axes_[i];
-    const bool good = axis.closed && !axis.powered && axis.slip <= play_of(robot_.joints[i]);
+    const bool good =
+        axis.closed && !axis.powered && axis.slip <= play_of(robot_.joints[i]) + forged;
     if (good) continue;
     all += format("%s%s: %s, brake %s, slipped by %.3g", all.empty() ? "" : "; ",
                   robot_.joints[i].name.c_str(), axis.state.c_str(), axis.closed ? "on" : "off",

@@ -23,7 +23,8 @@ class RestWatch {
   /// No joint has moved further than a brake's play (0.5 mm, 2 mrad) since its brake closed.
   [[nodiscard]] bool held() const;
   /// What is not as it should be, of each drive; empty: all is.
-  [[nodiscard]] std::string complaints() const;
+  /// @param forged by which an encoder deceives its servo until the brake holds, m or rad
+  [[nodiscard]] std::string complaints(double forged = 0.0) const;
 
  private:
   struct Axis {

@@ -80,7 +80,8 @@ void run_drawn(const Ground& ground, std::uint64_t number, Tally& tally) {
   const WholeRun::Result result = run.result();
   const std::string what = "run " + std::to_string(number) + ": " + kind.spec + " at " +
                            std::to_string(static_cast<int>(phase)) + ": " + result.reason;
-  EXPECT_EQ(run.rest().complaints(), "") << what;
+  const double misread_m = scaled.forges == Scaled::Forges::kPosition ? magnitude : 0.0;
+  EXPECT_EQ(run.rest().complaints(misread_m), "") << what;
   EXPECT_NE(result.ending.reason, EndReason::kNone) << what;
   if (result.ending.reason != EndReason::kPlanDone) {
     ++tally.stopped;
@@ -89,8 +90,7 @@ void run_drawn(const Ground& ground, std::uint64_t number, Tally& tally) {
   }
   // A force that is forged pushes the compliant tool by it over its stiffness.
   const double soft_Npm = ground.planned.plan.compliance.stiffness_Npm;
-  double forged_m = 0.0;
-  if (scaled.forges == Scaled::Forges::kPosition) forged_m = magnitude;
+  double forged_m = misread_m;
   if (scaled.forges == Scaled::Forges::kForce) forged_m = magnitude / soft_Npm;
   const bool right = result.truth.error_norm_m <= task.goal_tolerance_m + forged_m;
   right ? ++tally.done : ++tally.wrong;
