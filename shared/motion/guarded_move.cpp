@@ -25,6 +25,10 @@ double stiffness(const Compliance& compliance, int axis) {
   return axis < 3 ? compliance.stiffness_Npm : compliance.stiffness_Nmpr;
 }
 
+double damping(const Compliance& compliance, int axis) {
+  return axis < 3 ? compliance.damping_Nspm : compliance.damping_Nmspr;
+}
+
 bool yields(const Compliance& compliance, int axis) {
   return (compliance.compliant_axes >> axis & 1U) != 0;
 }
@@ -70,6 +74,7 @@ GuardedMove::Output GuardedMove::update(const Input& input) {
   remember(input);
   if (input.wrench_fresh) {
     detector_.update(input.time_ns, input.wrench, kept());
+    watch_resistance(input.wrench);
     peak_force_N_ = std::max(peak_force_N_, input.wrench.head<3>().norm());
   }
   switch (phase_) {
@@ -131,18 +136,19 @@ void GuardedMove::move(const Input& input) {
 
   const double elapsed_s = kNanosecond_s * static_cast<double>(input.time_ns - profile_start_ns_);
   const double path = profile_from_ + profile_.at(elapsed_s).position;
-  bool limited = false;
+  std::uint8_t limited = 0;
   setpoint_.pose = clamped(displaced(rest_, along_ * path), input.pose, limited);
   // The means since the last update, not the profile's own: a plant that takes steps of this length
   // follows them to the pose, and not beside it by half a step of its speed.
   if (const double step = step_s(); step > 0.0) {
     const Vector6 velocity = along_ * ((path - path_) / step);
-    setpoint_.acceleration = (velocity - setpoint_.velocity) / step;
-    setpoint_.velocity = velocity;
+    setpoint_.acceleration = (velocity - path_velocity_) / step;
+    setpoint_.velocity = path_velocity_ = velocity;
+    ease(input.pose, static_cast<std::uint8_t>(resisted_ | limited));
   }
   path_ = path;
 
-  if (!limited || !slower_than(kBlockedSpeed_mps, kBlockedSpeed_radps)) {
+  if (limited == 0 || !slower_than(kBlockedSpeed_mps, kBlockedSpeed_radps)) {
     pressed_since_ns_ = -1;
   } else if (pressed_since_ns_ < 0) {
     pressed_since_ns_ = input.time_ns;
@@ -150,7 +156,7 @@ void GuardedMove::move(const Input& input) {
   if (pressed_since_ns_ >= 0 && input.time_ns - pressed_since_ns_ >= kBlocked_ns) {
     return enter_settling(input, Outcome::kBlocked);
   }
-  if (elapsed_s >= profile_.duration_s() && !limited) enter_settling(input, Outcome::kReached);
+  if (elapsed_s >= profile_.duration_s() && limited == 0) enter_settling(input, Outcome::kReached);
 }
 
 void GuardedMove::enter_probing(const Input& input) {
@@ -166,6 +172,7 @@ void GuardedMove::enter_probing(const Input& input) {
     if (candidates.sign(axis) == 0) correction[axis] = 0.0;
   }
   setpoint_.pose = displaced(setpoint_.pose, correction);
+  path_velocity_.setZero();
   setpoint_.velocity.setZero();
   setpoint_.acceleration.setZero();
 }
@@ -187,6 +194,7 @@ void GuardedMove::probe(const Input& input) {
 // tool runs out to.
 void GuardedMove::resume(const Input& input) {
   phase_ = Phase::kMoving;
+  resisted_ = 0;
   path_ = std::clamp(path_at(free_tool_.run_out()), path_, length_);
   plan_path(input.time_ns, path_);
   setpoint_.pose = displaced(rest_, along_ * path_);
@@ -231,18 +239,49 @@ void GuardedMove::settle(const Input& input) {
   result_ = result;
 }
 
-Pose GuardedMove::clamped(const Pose& setpoint, const Pose& pose, bool& active) const {
+Pose GuardedMove::clamped(const Pose& setpoint, const Pose& pose, std::uint8_t& limited) const {
   Vector6 pull = displacement_between(pose, setpoint);
-  active = false;
+  limited = 0;
   for (int axis = 0; axis < 6; ++axis) {
     if (!yields(parameters_.compliance, axis)) continue;
     const double most = (axis < 3 ? parameters_.force_limit_N : parameters_.torque_limit_Nm) /
                         stiffness(parameters_.compliance, axis);
     if (std::abs(pull[axis]) <= most) continue;
-    active = true;
+    limited = static_cast<std::uint8_t>(limited | 1U << axis);
     pull[axis] = std::copysign(most, pull[axis]);
   }
-  return active ? displaced(pose, pull) : setpoint;
+  return limited != 0 ? displaced(pose, pull) : setpoint;
+}
+
+void GuardedMove::watch_resistance(const Vector6& wrench) {
+  const ContactThresholds& t = parameters_.thresholds;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!yields(parameters_.compliance, axis) || along_[axis] == 0.0) continue;
+    const auto bit = static_cast<std::uint8_t>(1U << axis);
+    const double against = along_[axis] < 0.0 ? wrench[axis] : -wrench[axis];
+    const double on = axis < 3 ? t.force_on_N : t.torque_on_Nm;
+    const double off = axis < 3 ? t.force_off_N : t.torque_off_Nm;
+    if (against > on) resisted_ = static_cast<std::uint8_t>(resisted_ | bit);
+    if (against < off) resisted_ = static_cast<std::uint8_t>(resisted_ & ~bit);
+  }
+}
+
+// The tool is held back there, so that the damper would pull with all of D xs' beside the spring.
+// It adds no more than brings both to the press of a probe; from there on the spring pulls alone,
+// up to its limit.
+void GuardedMove::ease(const Pose& pose, std::uint8_t axes) {
+  if (axes == 0) return;
+  const ContactThresholds& t = parameters_.thresholds;
+  const Vector6 lead = displacement_between(pose, setpoint_.pose);
+  for (int axis = 0; axis < 6; ++axis) {
+    if ((axes >> axis & 1U) == 0) continue;
+    const double press = kProbeOverOn * (axis < 3 ? t.force_on_N : t.torque_on_Nm);
+    const double spring = stiffness(parameters_.compliance, axis) * lead[axis];
+    const double pull = along_[axis] < 0.0 ? -spring : spring;
+    const double speed_most = std::max(0.0, press - pull) / damping(parameters_.compliance, axis);
+    setpoint_.velocity[axis] = std::clamp(setpoint_.velocity[axis], -speed_most, speed_most);
+    setpoint_.acceleration[axis] = 0.0;
+  }
 }
 
 ContactSignature GuardedMove::kept() const {

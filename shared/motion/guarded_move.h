@@ -19,7 +19,9 @@
 // left.
 //
 // The plant between setpoint and pose (an ODE rollout, or an admittance law in front of drives)
-// realises Compliance; the move itself never looks at the spring's own force.
+// realises Compliance; the move itself never looks at the spring's own force. It bounds what the
+// plant can pull with, spring and feed-forward together, where something holds the tool back: also
+// where nobody watches for that contact.
 
 #include <array>
 #include <cstddef>
@@ -99,7 +101,10 @@ class GuardedMove {
   void probe(const Input& input);
   void resume(const Input& input);
   void settle(const Input& input);
-  [[nodiscard]] Pose clamped(const Pose& setpoint, const Pose& pose, bool& active) const;
+  /// @param limited out: bit a: the spring's pull is at its limit on axis a
+  [[nodiscard]] Pose clamped(const Pose& setpoint, const Pose& pose, std::uint8_t& limited) const;
+  void watch_resistance(const Vector6& wrench);
+  void ease(const Pose& pose, std::uint8_t axes);
   [[nodiscard]] ContactSignature watched(ContactSignature bits) const;
   /// While a contact is being made the tool presses on into those that it holds already; which of
   /// them are left shows when it is at rest.
@@ -125,8 +130,10 @@ class GuardedMove {
   Setpoint setpoint_;
   MotionProfile profile_;
   std::int64_t profile_start_ns_ = 0;
-  double profile_from_ = 0.0;  ///< path already behind the profile's start
-  double path_ = 0.0;          ///< path covered by the command
+  double profile_from_ = 0.0;                ///< path already behind the profile's start
+  double path_ = 0.0;                        ///< path covered by the command
+  Vector6 path_velocity_ = Vector6::Zero();  ///< of the command, before anything is eased
+  std::uint8_t resisted_ = 0;  ///< bit a: something pushes back against the command on axis a
   Admittance free_tool_;       ///< while probing: the tool if nothing touches it
   std::int64_t pressed_since_ns_ = -1;
   std::int64_t settling_since_ns_ = 0;

@@ -65,7 +65,7 @@ struct MoveParameters {
   SpeedLimits speeds;
   ContactThresholds thresholds;
   Compliance compliance;
-  /// The spring may pull no harder than this on any axis.
+  /// Where the tool is held, spring and feed-forward together pull no harder than this on any axis.
   double force_limit_N = 20.0;
   double torque_limit_Nm = 2.0;
   std::uint32_t timeout_us = 10'000'000;

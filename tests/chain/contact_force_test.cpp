@@ -172,6 +172,36 @@ TEST(ContactForce, AThousandTouchesStayBelowTheFormula) {
 
 TEST(ContactForce, EightyTouchesStayBelowTheFormula) { expect_below_the_formula(draw_contacts(8)); }
 
+// --- nobody watches -----------------------------------------------------------------------------
+
+// The wall ends the move neither by a trigger nor by a stop: what presses then is the limit's.
+TEST(ContactForce, APushThatNobodyWatchesStaysWithinLimitAndFormula) {
+  const Cell cell = cell_with(5e4, 2000, 0.010);
+  const Task task = wall_task();
+  const ContactLoop loop = contact_loop(cell);
+  Compliance compliance;
+  compliance.mass_kg = 0.5;
+  compliance.damping_Nspm = damping_least_Nspm(loop);
+  // The limit is the push's; the truth counts its friction, too, and what answers to noise.
+  const double with_friction = std::hypot(1.0, task.friction.nominal);
+  const double noise_N = 3.0 * cell.robot.sensor.force_noise_N;
+  for (const double speed_mps : {0.005, 0.02, 0.05, 0.1}) {
+    Plan plan = plan_without_steps(compliance, speed_mps);
+    plan.parameter_sets[0].trigger_mask = {};
+    plan.steps = {step_along(0, 0.1, Outcome::kBlocked, kSuccessorDone)};
+    WholeRun run(cell, task, plan, {});
+    const auto result = run.run();
+    const double limit_N = plan.force_limit_N * with_friction + noise_N;
+    const double formula_N = peak_force_N(loop, plan.compliance,
+                                          plan.parameter_sets[0].thresholds.force_on_N, speed_mps);
+    EXPECT_LE(result.truth.contact_force_N_max, std::max(formula_N, limit_N))
+        << "at " << speed_mps << " m/s";
+    EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanDone) << result.reason;
+    std::printf("unwatched at %5.3f m/s: %.1f N, by the formula %.1f, limit %.1f\n", speed_mps,
+                result.truth.contact_force_N_max, formula_N, limit_N);
+  }
+}
+
 // --- the inequality ---------------------------------------------------------------------------
 
 class Forces : public executor::CycleSink {
