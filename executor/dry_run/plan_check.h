@@ -11,7 +11,8 @@
 namespace tenon::executor {
 
 /// Empty where the cell can execute the plan. In order: latency, the two inequalities of the
-/// compliance, peak force, sensor noise.
+/// compliance, those of its rotations, peak force and sensor noise (and torque), contacts that
+/// would not be noticed, an end that is not about the goal.
 [[nodiscard]] std::vector<std::string> check_plan(const Plan& plan, const Cell& cell);
 
 }  // namespace tenon::executor

@@ -54,4 +54,25 @@ struct StepReach {
 /// commands.
 [[nodiscard]] std::vector<std::optional<StepReach>> reach_of(const Plan& plan);
 
+/// Where the ways that the plan calls done can end; empty where it has none.
+[[nodiscard]] std::optional<ReachBox> done_reach(const Plan& plan);
+
+/// An axis on which the tool and the plan's goal are further apart than the plan's steps account
+/// for.
+struct GoalGap {
+  int axis = 0;
+  double tool = 0.0;   ///< task frame, m; of a rotation, rad from the plan's start
+  double goal = 0.0;   ///< the same
+  double bound = 0.0;  ///< that both would have to be within
+};
+
+/// Held against the goal by what encoders tell: how far off the environment is, they do not; but
+/// goal and end must both lie where the plan's ways end.
+/// @param reach done_reach(plan)  @param tool as it stands at the end, task frame
+/// @param slack_m, slack_rad by which the tool may have stood beside the plan's start
+/// @return the worst axis of the plan's coordinates; empty where all is well, or the plan has no
+/// goal tolerance, and so no goal
+[[nodiscard]] std::optional<GoalGap> goal_gap(const Plan& plan, const ReachBox& reach,
+                                              const Pose& tool, double slack_m, double slack_rad);
+
 }  // namespace tenon::executor

@@ -36,8 +36,10 @@ enum class EndReason : std::uint8_t {
   kBrakeFailed = 25,   ///< index: joint; value: way that it moved with the drives off, bound
   kFollowingError = 26,  ///< index: joint; value: m or rad from all that it was commanded, bound
   kBlind = 27,           ///< value: s without a sample that guarded moves may see, bound
+  kTareOffset = 28,      ///< index: wrench axis; value: mean less payload, the cell's bias, bound
+  kNotAtGoal = 29,       ///< index: axis; value: where the tool is, wanted: the goal, bound
 };
-inline constexpr EndReason kLastEndReason = EndReason::kBlind;
+inline constexpr EndReason kLastEndReason = EndReason::kNotAtGoal;
 [[nodiscard]] const char* to_string(EndReason reason);
 
 /// How the motion comes to rest.

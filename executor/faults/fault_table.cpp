@@ -133,7 +133,7 @@ constexpr std::array kTable = {
     fault(EndReason::kFeedbackMissing, "feedback_missing",
           "cycles in a row without a joint's answer", {.cycles = kFeedbackMissesMax + 2}),
     fault(EndReason::kWrenchMissing, "wrench_missing", "age of the wrench",
-          {.cycles = 2, .time_s = kWrenchAgeMax_s}),
+          {.cycles = kWrenchCyclesMin + 2, .time_s = kWrenchAgeMax_s}),
     fault(EndReason::kOverruns, "overruns",
           "leaky bucket of late cycles; one in twenty may be late", {.cycles = kLateCyclesMost + 1},
           "the first of so many late cycles"),
@@ -154,7 +154,11 @@ constexpr std::array kTable = {
           "every joint against all that it was commanded within three lags",
           {.cycles = 2, .time_s = kFollowingPatience_s}, "an error beyond its bound"),
     fault(EndReason::kBlind, "blind", "age of the last sample that guarded moves may see",
-          {.cycles = 2, .time_s = kBlindMax_s}),
+          {.cycles = kBlindCyclesMin + 2, .time_s = kBlindMax_s}),
+    fault(EndReason::kTareOffset, "tare_offset",
+          "mean of the tare against the cell's sensor_bias and payload",
+          {.cycles = kTareSamples + 2}, "the tare's first sample", EndManner::kHold),
+    ended(EndReason::kNotAtGoal, "not_at_goal", "tool's pose at the plan's end against its goal"),
 };
 
 constexpr bool every_reason_has_a_row() {

@@ -19,10 +19,16 @@ std::vector<std::size_t> last_turning(const Robot& robot) {
   return joints;
 }
 
+// What it is to find out is not known yet.
+Cell without_bias(Cell cell) {
+  cell.sensor_bias.reset();
+  return cell;
+}
+
 }  // namespace
 
 IdentifyPayloadMotion::IdentifyPayloadMotion(const Cell& cell, const Parameters& parameters)
-    : IdentificationMotion(cell),
+    : IdentificationMotion(without_bias(cell)),
       parameters_(parameters),
       turning_(last_turning(cell.robot)),
       reading_(SensorTare::parameters_for(cell.robot.sensor, parameters.samples)) {

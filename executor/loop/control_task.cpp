@@ -26,7 +26,8 @@ double time_to_rest_s(const Robot& robot) {
 // The task has done what it could, and stands.
 bool came_to_its_end(EndReason reason) {
   return reason == EndReason::kPlanDone || reason == EndReason::kPlanFailed ||
-         reason == EndReason::kMeasured || reason == EndReason::kNothingMet;
+         reason == EndReason::kMeasured || reason == EndReason::kNothingMet ||
+         reason == EndReason::kNotAtGoal;
 }
 
 }  // namespace
@@ -181,7 +182,7 @@ ControlTask::Turn ControlTask::act(const ArmFeedback& feedback) {
     case State::kWatching:
       return watch_brakes();
     case State::kCatching:
-      return keep_power();
+      return keep_power(feedback);
     case State::kFinished:
       return {};
   }
@@ -210,7 +211,7 @@ ControlTask::Turn ControlTask::tare(const ArmFeedback& feedback) {
     case SensorTare::Status::kGathering:
       return {};
     case SensorTare::Status::kDone:
-      supervision_.tare(sensor_tare_.mean());
+      if (const auto pushed = supervision_.tare(sensor_tare_.mean())) return *pushed;
       return Event::kTared;
     case SensorTare::Status::kUnsteady:
       return unsteady(sensor_tare_);
@@ -257,10 +258,12 @@ ControlTask::Turn ControlTask::watch_brakes() const {
   return time_in_state_s() >= parameters_.brake_watch_s ? Turn(Event::kHeld) : Turn();
 }
 
-// Until the user has something under the arm, and says so.
-ControlTask::Turn ControlTask::keep_power() const {
+// Until the user has something under the arm, and says so. An arm in a fault holds nothing, however
+// long one waits.
+ControlTask::Turn ControlTask::keep_power(const ArmFeedback& feedback) const {
   const bool brake = ending_.reason == EndReason::kBrakeFailed;
-  return brake && cell_.hold_if_brake_fails ? Turn() : Turn(Event::kStop);
+  const bool holds = cell_.hold_if_brake_fails && feedback.state != ArmState::kFault;
+  return brake && holds ? Turn() : Turn(Event::kStop);
 }
 
 std::uint32_t ControlTask::all_joints() const { return (1U << cell_.robot.joints.size()) - 1U; }
@@ -275,6 +278,9 @@ void ControlTask::write_record(std::int64_t now_ns, const ArmFeedback& feedback,
   r.arm_state = feedback.state;
   r.request = command.request;
   r.end_reason = static_cast<std::uint8_t>(ending_.reason);
+  r.end_index = ending_.index;
+  r.end_value = ending_.value;
+  r.end_bound = ending_.bound;
   r.wrench_fresh = supervision_.wrench_usable();
   r.pose = data_of(supervision_.tool());
   r.wrench = data_of(supervision_.wrench());

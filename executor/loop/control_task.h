@@ -132,7 +132,7 @@ class ControlTask {
   [[nodiscard]] Turn wait_for_rest(const ArmFeedback& feedback);
   [[nodiscard]] Turn wait_for_disabled(const ArmFeedback& feedback);
   [[nodiscard]] Turn watch_brakes() const;
-  [[nodiscard]] Turn keep_power() const;
+  [[nodiscard]] Turn keep_power(const ArmFeedback& feedback) const;
   void write_record(std::int64_t now_ns, const ArmFeedback& feedback, const Command& command);
 
   Cell cell_;

@@ -10,6 +10,7 @@ Controller::Controller(const Cell& cell, const DryRun& dry_run, const Parameters
     : ControlTask(cell, parameters),
       plan_(with_steps(dry_run.plan)),
       start_(dry_run.start),
+      done_reach_(done_reach(plan_)),
       parameters_(parameters),
       tool_(plan_.compliance),
       runner_(plan_) {}
@@ -82,6 +83,19 @@ std::optional<Ending> Controller::off_start() const {
                 .wanted = (*start_)[joint]};
 }
 
+// The plan says done. Whether that can be its goal is seen by the encoders.
+Ending Controller::done() const {
+  if (!done_reach_) return {.reason = EndReason::kPlanDone};
+  const auto gap = goal_gap(plan_, *done_reach_, supervision().tool(),
+                            parameters_.start_tolerance_m, parameters_.start_tolerance_rad);
+  if (!gap) return {.reason = EndReason::kPlanDone};
+  return {.reason = EndReason::kNotAtGoal,
+          .index = gap->axis,
+          .value = gap->tool,
+          .bound = gap->bound,
+          .wanted = gap->goal};
+}
+
 ControlTask::Turn Controller::start_approach() {
   const std::optional<Ending> off = off_start();
   if (!off) return Event::kAtStart;
@@ -120,7 +134,7 @@ ControlTask::Turn Controller::run(const ArmFeedback& /*feedback*/) {
     case PlanRunner::Status::kRunning:
       return {};
     case PlanRunner::Status::kDone:
-      return Ending{.reason = EndReason::kPlanDone};
+      return done();
     case PlanRunner::Status::kFailed: {
       const StepReport& last = runner_.report(runner_.report_count() - 1);
       return Ending{.reason = EndReason::kPlanFailed,

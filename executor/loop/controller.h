@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "executor/dry_run/dry_run.h"
+#include "executor/dry_run/plan_reach.h"
 #include "executor/loop/control_task.h"
 #include "executor/motion/compliant_tool.h"
 #include "executor/motion/joint_move.h"
@@ -59,11 +60,13 @@ class Controller : public ControlTask {
     return plan_.parameter_sets[plan_.steps[runner_.step()].parameter_set];
   }
   [[nodiscard]] std::optional<Ending> off_start() const;
+  [[nodiscard]] Ending done() const;
   [[nodiscard]] double on_threshold(int axis) const;
   [[nodiscard]] int touching_axis(std::uint8_t axes) const;
 
   Plan plan_;
   std::optional<JointVector> start_;  ///< joints, as the dry run found them
+  std::optional<ReachBox> done_reach_;
   Parameters parameters_;
   CompliantTool tool_;
   PlanRunner runner_;

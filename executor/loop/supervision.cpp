@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace tenon::executor {
+namespace {
+
+// The arm counts a sensor's silence in cycles, and knows its node: where cycles are long, too, it
+// is to be heard first.
+
+}  // namespace
 
 Supervision::Supervision(const Cell& cell, const ToolKinematics& kinematics,
                          const Parameters& parameters)
@@ -11,7 +17,11 @@ Supervision::Supervision(const Cell& cell, const ToolKinematics& kinematics,
       kinematics_(kinematics),
       parameters_(parameters),
       wrench_(cell),
-      following_watch_(cell.robot) {}
+      following_watch_(cell.robot) {
+  const double cycle_s = 1e-6 * cell.robot.cycle_us;
+  parameters_.wrench_age_max_s = std::max(parameters_.wrench_age_max_s, kWrenchCyclesMin * cycle_s);
+  parameters_.blind_max_s = std::max(parameters_.blind_max_s, kBlindCyclesMin * cycle_s);
+}
 
 std::optional<Ending> Supervision::update(const ArmFeedback& feedback, bool following) {
   take_joints(feedback);
@@ -24,9 +34,22 @@ std::optional<Ending> Supervision::update(const ArmFeedback& feedback, bool foll
   return force ? force : astray;
 }
 
-void Supervision::tare(const Vector6& mean_raw) {
+std::optional<Ending> Supervision::tare(const Vector6& mean_raw) {
   wrench_.tare(mean_raw, tool_);
+  if (const auto& known = cell_.sensor_bias) {
+    for (int axis = 0; axis < 6; ++axis) {
+      const double bound = axis < 3 ? known->force_tolerance_N : known->torque_tolerance_Nm;
+      const double found = wrench_.bias()[axis];
+      if (std::abs(found - known->wrench[axis]) <= bound) continue;
+      return Ending{.reason = EndReason::kTareOffset,
+                    .index = axis,
+                    .value = found,
+                    .bound = bound,
+                    .wanted = known->wrench[axis]};
+    }
+  }
   tared_ = true;
+  return std::nullopt;
 }
 
 void Supervision::take_joints(const ArmFeedback& feedback) {

@@ -21,8 +21,9 @@ class Supervision {
  public:
   struct Parameters {
     int feedback_misses_max = kFeedbackMissesMax;  ///< cycles in a row
-    double wrench_age_max_s = kWrenchAgeMax_s;
-    double blind_max_s = kBlindMax_s;  ///< without a sample that guarded moves may see
+    double wrench_age_max_s = kWrenchAgeMax_s;  ///< at least kWrenchCyclesMin cycles
+    /// Without a sample that guarded moves may see; at least kBlindCyclesMin cycles.
+    double blind_max_s = kBlindMax_s;
   };
 
   /// @param kinematics outlives this
@@ -35,7 +36,8 @@ class Supervision {
   /// For so many cycles guarded moves take no samples; the bounds on force and torque go on.
   void distrust_samples(int cycles) { distrusted_cycles_ = cycles; }
   /// From now on the mean raw reading means no contact, and the force is watched.
-  void tare(const Vector6& mean_raw);
+  /// @return that it cannot be so: without the payload it is not what the cell knows as the bias
+  [[nodiscard]] std::optional<Ending> tare(const Vector6& mean_raw);
   /// Once a cycle, after update(): the velocity commanded to the tool, task axes, and the joints'
   /// positions.
   void commanded(const Vector6& velocity, const JointVector& position) {

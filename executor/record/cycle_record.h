@@ -45,6 +45,9 @@ struct CycleRecord {
   ArmState arm_state = ArmState::kUnconfigured;
   ArmRequest request = ArmRequest::kDisabled;
   std::uint8_t end_reason = 0;
+  std::int32_t end_index = -1;  ///< of the Ending, with value and bound
+  double end_value = 0.0;
+  double end_bound = 0.0;
 
   // What the guarded move got and gave; valid while a move runs (moving).
   bool moving = false;

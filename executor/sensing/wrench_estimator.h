@@ -36,6 +36,8 @@ class WrenchEstimator {
   /// Sets the bias so that the mean raw reading at rest at this pose means no contact.
   void tare(const Vector6& mean_raw, const Pose& X_TP);
 
+  /// What the sensor reads of itself, by the last tare; its axes, N and Nm.
+  [[nodiscard]] const Vector6& bias() const { return bias_; }
   /// Of the last good sample: what the environment does to the tool, N and Nm.
   [[nodiscard]] const Vector6& external() const { return external_; }
   /// The axis that saturated.

@@ -74,6 +74,21 @@ std::string tare_unsteady(const Ending& e) {
                 axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
 }
 
+std::string tare_offset(const Ending& e) {
+  return format(
+      "something pushes while taring: without the payload the sensor's %s reads %.4g %s, the "
+      "cell's "
+      "sensor_bias is %.4g, must be within %.3g: free the part, or calibrate again",
+      axis_name(e.index), e.value, wrench_unit(e.index), e.wanted, e.bound);
+}
+
+std::string not_at_goal(const Ending& e, const Plan& plan) {
+  return format(
+      "plan '%s' came to its end, but not to its goal: the tool's %s is at %.4f %s, the goal at "
+      "%.4f, and the plan's steps account for no more than %.4f between them",
+      plan.task_name.c_str(), axis_name(e.index), e.value, axis_unit(e.index), e.wanted, e.bound);
+}
+
 std::string touched(const Ending& e) {
   return format("touched something on the way to the start: %s reads %.3g %s, at most %.3g",
                 axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
@@ -172,6 +187,10 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return format("the tool's %s", axis_name(e.index)) + off_start(axis_unit(e.index), e, plan);
     case EndReason::kTareUnsteady:
       return tare_unsteady(e);
+    case EndReason::kTareOffset:
+      return tare_offset(e);
+    case EndReason::kNotAtGoal:
+      return not_at_goal(e, plan);
     case EndReason::kContactOnApproach:
       return touched(e);
     case EndReason::kUnreachable:

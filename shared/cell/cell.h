@@ -1,12 +1,21 @@
 #pragma once
 // A cell: one robot, calibrated against one task frame. What hw/cells/NAME.yaml say.
 
+#include <optional>
 #include <string>
 
 #include "shared/cell/robot.h"
 #include "shared/math/pose.h"
 
 namespace tenon {
+
+/// What a sensor reads of itself, without payload and contact, in its own axes; and by how much a
+/// tare may find it otherwise.
+struct SensorBias {
+  Vector6 wrench = Vector6::Zero();  ///< N, Nm
+  double force_tolerance_N = 0.0;    ///< on any axis
+  double torque_tolerance_Nm = 0.0;
+};
 
 struct Cell {
   std::string name;
@@ -18,7 +27,10 @@ struct Cell {
   double payload_mass_kg = 0.0;     ///< beyond the sensor
   Vector3 payload_com_m = Vector3::Zero();  ///< in the sensor frame
   double contact_stiffness_Npm = 5e4;       ///< k_e, in series with arm and sensor
-  double force_fault_N = 60.0;              ///< beyond: stop
+  double contact_stiffness_Nmpr =
+      0.0;  ///< the same against a turn about the tool tip; 0: not known
+  std::optional<SensorBias> sensor_bias;  ///< unset: a tare takes what it finds
+  double force_fault_N = 60.0;            ///< beyond: stop
   double torque_fault_Nm = 10.0;
   bool hold_if_brake_fails = false;  ///< a brake that slips after disabling: power again, and hold
 };

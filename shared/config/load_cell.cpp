@@ -6,16 +6,29 @@
 #include "shared/config/yaml_value.h"
 
 namespace tenon {
+namespace {
+
+using config::Map;
+using config::positive_to;
+using config::Value;
+
+SensorBias read_bias(const Value& value, const ForceTorqueSensor& sensor) {
+  const Map map(value, {"force_N", "torque_Nm", "force_tolerance_N", "torque_tolerance_Nm"});
+  SensorBias bias;
+  bias.wrench << map.at("force_N").vector(config::within(sensor.force_range_N)),
+      map.at("torque_Nm").vector(config::within(sensor.torque_range_Nm));
+  bias.force_tolerance_N = map.number("force_tolerance_N", positive_to(sensor.force_range_N));
+  bias.torque_tolerance_Nm = map.number("torque_tolerance_Nm", positive_to(sensor.torque_range_Nm));
+  return bias;
+}
+
+}  // namespace
 
 Cell load_cell(const std::filesystem::path& file) {
-  using config::Map;
-  using config::positive_to;
-  using config::Value;
-
-  const Map map(
-      Value::parse(file, config::read_file(file)),
-      {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange", "sensor_in_flange",
-       "payload", "contact_stiffness_Npm", "faults", "on_brake_failure"});
+  const Map map(Value::parse(file, config::read_file(file)),
+                {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange",
+                 "sensor_in_flange", "payload", "contact_stiffness_Npm", "contact_stiffness_Nmpr",
+                 "sensor_bias", "faults", "on_brake_failure"});
   Cell cell;
   cell.name = map.at("name").name();
   if (const auto up = map.find("up_in_base")) {
@@ -36,6 +49,10 @@ Cell load_cell(const std::filesystem::path& file) {
   // The arm is one part of the series, which is softer than each of its parts.
   cell.contact_stiffness_Npm =
       map.number("contact_stiffness_Npm", {1e2, std::min(1e8, cell.robot.stiffness_Npm)});
+  map.optional_number("contact_stiffness_Nmpr", positive_to(1e8), cell.contact_stiffness_Nmpr);
+  if (const auto bias = map.find("sensor_bias")) {
+    cell.sensor_bias = read_bias(*bias, cell.robot.sensor);
+  }
 
   // Beyond its range the sensor would never show the fault.
   const Map faults(map.at("faults"), {"force_N", "torque_Nm"});

@@ -106,6 +106,7 @@ Travels first_contact(double force_on_N) {
   cell.robot.sensor.force_noise_N = 1e-3;  // a noisy sample fires a little early
   Plan plan = box_plan("1");
   plan.check_envelopes = false;
+  plan.goal_tolerance_m = 0.0;  // it ends at the wall
   plan.parameter_sets[0].thresholds.force_on_N = force_on_N;
   plan.parameter_sets[0].speeds.approach_mps = 0.02;
   plan.parameter_sets[0].speeds.contact_mps = 0.01;

@@ -272,6 +272,26 @@ TEST(Controller, ANoisySensorIsNotTared) {
   EXPECT_NEAR(bench.controller.ending().bound, 0.3, 1e-12);
 }
 
+// The sensor reads steadily; only what the cell knows of it tells that something pushes.
+TEST(Controller, TaringAgainstSomethingThatPushesIsRefusedWhereTheCellKnowsTheBias) {
+  Cell cell = hand_made_cell();
+  cell.sensor_bias = SensorBias{Vector6::Zero(), 3.0, 0.5};
+  cell.sensor_bias->wrench << 4.0, -2.0, 1.0, 0.1, 0.0, -0.2;
+  Bench good(touch_and_slide_plan(), {}, cell);
+  good.arm.bias = cell.sensor_bias->wrench;
+  good.arm.walls.push_back({0, +1, 0.13});
+  good.run();
+  EXPECT_EQ(good.controller.ending().reason, EndReason::kPlanDone) << good.ending();
+
+  Bench pushed(touch_and_slide_plan(), {}, cell);
+  pushed.arm.bias = cell.sensor_bias->wrench;
+  pushed.arm.push[2] = 8.0;
+  pushed.run();
+  EXPECT_EQ(pushed.controller.ending().reason, EndReason::kTareOffset) << pushed.ending();
+  EXPECT_NE(pushed.ending().find("sensor_bias"), std::string::npos) << pushed.ending();
+  EXPECT_EQ(pushed.controller.runner().report_count(), 0U);
+}
+
 TEST(Controller, AMovingArmIsNotTared) {
   Bench bench(touch_and_slide_plan());
   bench.run_until(State::kTaring);

@@ -97,8 +97,8 @@ TEST(WrenchEstimator, AForceAtTheTipIsFoundThroughFramesWeightAndBias) {
   EXPECT_LT(estimator.external().tail<3>().norm(), 1e-9);
 }
 
-// command of cycle k -> the arm moves from SYNC k + 1 to k + 2 -> sampled and told at k + 2.
-// An immediate stop: the payload pulls on, the estimate does not feel it.
+// command of cycle k -> taken up with SYNC k + 1, the arm follows by the rest of its lag -> sampled
+// -> told a cycle later. An immediate stop: the payload pulls on, the estimate does not feel it.
 TEST(WrenchEstimator, TheInertiaOfAnImmediateStopIsNoContact) {
   Cell cell = hand_made_cell();
   cell.X_BT = cell.X_FP = cell.X_FS = Pose{};
@@ -114,13 +114,15 @@ TEST(WrenchEstimator, TheInertiaOfAnImmediateStopIsNoContact) {
     rest[2] = -0.4 * 9.80665;
     estimator.tare(rest, {});
     double most_N = 0.0;
-    double arm_mps = 0.0;  // the arm: a first-order lag, one cycle of delay
+    double arm_mps = 0.0;  // the arm: a cycle of dead time and 2 ms of first order
     double commanded_mps = 0.0;
+    double waiting_mps = 0.0;
     double acting_mps = 0.0;
     for (int i = 0; i < 200; ++i) {
       const double before_mps = arm_mps;
-      arm_mps += (acting_mps - arm_mps) * kT / (kT + 0.004);
-      acting_mps = commanded_mps;
+      arm_mps += (acting_mps - arm_mps) * kT / (kT + 0.002);
+      acting_mps = waiting_mps;
+      waiting_mps = commanded_mps;
       commanded_mps = i < 100 ? kV_mps : 0.0;
       Vector6 raw = rest;
       raw[0] -= 0.4 * (arm_mps - before_mps) / kT;

@@ -76,5 +76,61 @@ TEST(PlanCheck, AForceLimitAboveTheFaultIsRefused) {
             "force_limit = 55 N, must be at most the cell's force_fault_N = 50 N");
 }
 
+// Its mask lets every contact pass but the one that the step would meet.
+TEST(PlanCheck, AMaskThatLeavesNoWayToNoticeAContactIsRefused) {
+  Plan plan = touch_and_slide_plan();
+  plan.parameter_sets.push_back(plan.parameter_sets[0]);
+  plan.steps[1].parameter_set = 1;
+  plan.parameter_sets[1].trigger_mask.bits = ContactSignature::bit(1, +1);
+  EXPECT_EQ(refusal(plan, hand_made_cell()),
+            "step 1 moves along +y, and its trigger mask (+y) lacks -y: a contact there would not "
+            "be noticed");
+  plan.parameter_sets[1].trigger_mask.bits = ContactSignature::bit(1, -1);
+  EXPECT_TRUE(check_plan(plan, hand_made_cell()).empty());
+  plan.compliance.compliant_axes = 0x05;
+  EXPECT_EQ(refusal(plan, hand_made_cell()),
+            "step 1 moves along +y, which does not yield (compliant: x z): a contact there would "
+            "not be noticed");
+}
+
+TEST(PlanCheck, ATurnIsHeldAgainstTheSameRulesWhereTheCellKnowsWhatItMeets) {
+  Plan plan = touch_and_slide_plan();
+  plan.compliance.compliant_axes = 0x3F;
+  Cell cell = hand_made_cell();
+  cell.payload_mass_kg = 0.0;
+  EXPECT_TRUE(check_plan(plan, cell).empty());
+  cell.contact_stiffness_Nmpr = 1000.0;
+  plan.compliance.damping_Nmspr = 4.0;
+  plan.compliance.inertia_kgm2 = 0.01;
+  plan.parameter_sets[0].speeds.contact_radps = 0.1;
+  EXPECT_EQ(
+      refusal(plan, cell),
+      "rotary damping D = 4 Nm s/rad, must be at least 1.5 k_e tau = 1.5 * 1000 * 0.003 = 4.5 "
+      "Nm s/rad");
+  plan.compliance.damping_Nmspr = 5.0;
+  plan.compliance.inertia_kgm2 = 0.02;
+  EXPECT_EQ(refusal(plan, cell),
+            "inertia = 0.02 kg m^2, must be at most D tau = 5 * 0.003 = 0.015 kg m^2");
+  plan.compliance.inertia_kgm2 = 0.01;
+  plan.parameter_sets[0].speeds.contact_radps = 2.0;
+  // 0.6 + 1000 * 2 * (0.004 + 0.002)
+  EXPECT_EQ(
+      refusal(plan, cell),
+      "parameter set 0: peak torque T_on + k_e w ((n + 1) T + tau_arm + I / D) = 0.6 + 1000 * "
+      "2 * 0.006 = 12.6 Nm, must be at most torque_fault_Nm = 10 Nm");
+}
+
+TEST(PlanCheck, AnEndThatIsNotAboutTheGoalIsRefused) {
+  Plan plan = touch_and_slide_plan();
+  plan.goal_tolerance_m = 2e-3;
+  plan.goal.position_m = Vector3(0.13, 0.04, 0.0);
+  EXPECT_TRUE(check_plan(plan, hand_made_cell()).empty());
+  plan.goal.position_m.y() = 0.05;
+  EXPECT_EQ(
+      refusal(plan, hand_made_cell()),
+      "the steps lead to y = [-0.0040, 0.0440] m, the plan's goal is at 0.0500: it was changed "
+      "since it was made");
+}
+
 }  // namespace
 }  // namespace tenon::executor

@@ -335,6 +335,21 @@ TEST(LoadCell, ReadsEveryValueAndTheRobotBesideIt) {
 
   folder.put("hanging.yaml", replaced(kCell, "payload:", "up_in_base: [0, 0.6, -0.8]\npayload:"));
   EXPECT_TRUE(load_cell(folder.path() / "hanging.yaml").up_B.isApprox(Vector3(0, 0.6, -0.8)));
+
+  EXPECT_FALSE(cell.sensor_bias);
+  EXPECT_EQ(cell.contact_stiffness_Nmpr, 0.0);
+  const Cell known = load_cell(folder.put(
+      "known.yaml",
+      replaced(
+          kCell, "faults:",
+          "contact_stiffness_Nmpr: 800\nsensor_bias: {force_N: [4, -2, 1], torque_Nm: [0.1, 0, "
+          "-0.2], force_tolerance_N: 3, torque_tolerance_Nm: 0.5}\nfaults:")));
+  EXPECT_EQ(known.contact_stiffness_Nmpr, 800.0);
+  ASSERT_TRUE(known.sensor_bias);
+  EXPECT_EQ(known.sensor_bias->wrench[1], -2.0);
+  EXPECT_EQ(known.sensor_bias->wrench[5], -0.2);
+  EXPECT_EQ(known.sensor_bias->force_tolerance_N, 3.0);
+  EXPECT_EQ(known.sensor_bias->torque_tolerance_Nm, 0.5);
 }
 
 TEST(LoadCell, RefusesEachBadLineWithItsPlace) {
@@ -344,6 +359,10 @@ TEST(LoadCell, RefusesEachBadLineWithItsPlace) {
       {"contact_stiffness_Npm: 5e4", "contact_stiffness_Npm: 2e6",
        ":7: contact_stiffness_Npm = 2e6, must be in [100, 1e+06]"},
       {"torque_Nm: 10", "torque_Nm: 0", ":8: faults.torque_Nm = 0, must be in (0, 15]"},
+      {"faults:",
+       "sensor_bias: {force_N: [0, 0, 0], torque_Nm: [0, 0, 0], force_tolerance_N: 0, "
+       "torque_tolerance_Nm: 1}\nfaults:",
+       ":8: sensor_bias.force_tolerance_N = 0, must be in (0, 300]"},
       {"payload:", "up_in_base: [0, 0, -0.9]\npayload:", ":6: up_in_base: must have length 1"},
   };
   expect_refusals(kCell, lines, [](const std::filesystem::path& file) { (void)load_cell(file); });
