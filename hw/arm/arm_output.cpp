@@ -23,6 +23,7 @@ void ArmOutput::send(const CanFrame& frame) noexcept {
       return;
     case SendResult::kQueueFull:
       ++counters_.send_failures;
+      supervision_.frame_refused();
       return;
     case SendResult::kDown:
       ++counters_.send_failures;

@@ -35,7 +35,8 @@ void ArmSupervision::reset() noexcept {
 void ArmSupervision::begin(std::int64_t now_ns) noexcept {
   watch_.restart(now_ns);
   missing_cycles_.fill(0);
-  stale_cycles_ = 0;
+  stale_cycles_ = silent_cycles_ = refused_cycles_ = 0;
+  refused_ = false;
   enter_state(ArmState::kDisabled, now_ns);
 }
 
@@ -119,7 +120,25 @@ void ArmSupervision::check_heartbeats(std::int64_t now_ns) noexcept {
   }
 }
 
+// Where SYNC never left, nobody can answer: that has a name of its own.
+void ArmSupervision::check_silence(const ArmFeedback& feedback) noexcept {
+  const bool silent = feedback.joints_fresh == 0 && !feedback.wrench_fresh && !refused_;
+  silent_cycles_ = silent ? silent_cycles_ + 1 : 0;
+  if (silent_cycles_ > kSilentCycles) {
+    raise({ArmFaultKind::kBusSilent, 0, 0, silent_cycles_});
+  }
+}
+
+void ArmSupervision::check_sending() noexcept {
+  refused_cycles_ = refused_ ? refused_cycles_ + 1 : 0;
+  refused_ = false;
+  if (refused_cycles_ > kRefusedCycles) {
+    raise({ArmFaultKind::kQueueFull, 0, 0, refused_cycles_});
+  }
+}
+
 void ArmSupervision::check_feedback(const ArmFeedback& feedback) noexcept {
+  check_silence(feedback);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     if ((feedback.joints_fresh >> i & 1u) != 0) {
       missing_cycles_[i] = 0;

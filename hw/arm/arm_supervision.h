@@ -8,7 +8,8 @@
 //   any --raise()--> kFault, until reset(). The first fault stays.
 //
 // Supervised: bus, heartbeat of every node, boot-ups and other NMT states of running nodes, EMCY,
-// statuswords, feedback and wrench missing for more than kMissingCycles cycles in a row.
+// statuswords, feedback and wrench missing for more than kMissingCycles cycles in a row, everything
+// missing and our own frames refused for fewer.
 //
 // Real-time but for the constructor, no clock; one thread. Joints and counters outlive it.
 
@@ -30,6 +31,11 @@ namespace tenon::hw {
 class ArmSupervision {
  public:
   static constexpr std::uint32_t kMissingCycles = 5;
+  /// Without any answer at all, and with frames of our own that were refused. Fewer, so that the
+  /// cause is named before what it leads to: drives that stand and then catch up with the command
+  /// feel like a contact.
+  static constexpr std::uint32_t kSilentCycles = 3;
+  static constexpr std::uint32_t kRefusedCycles = 2;
   static constexpr std::int64_t kEnablingTimeout_ns = 2'000'000'000;
 
   ArmSupervision(const Robot& robot, std::span<const JointChannel> joints, ArmCounters& counters);
@@ -47,6 +53,8 @@ class ArmSupervision {
   void check_bus(const CanBusStatus& status) noexcept;
   /// A frame could not be sent because the bus is gone. @param status of that bus
   void bus_lost(const CanBusStatus& status) noexcept;
+  /// A frame of this cycle found the transmit queue full.
+  void frame_refused() noexcept { refused_ = true; }
   void take_heartbeat(const canopen::Heartbeat& heartbeat, std::int64_t now_ns) noexcept;
   void take_emergency(const canopen::Emergency& emergency) noexcept;
 
@@ -54,6 +62,8 @@ class ArmSupervision {
   void check_heartbeats(std::int64_t now_ns) noexcept;
   /// @param feedback of the cycle that has closed
   void check_feedback(const ArmFeedback& feedback) noexcept;
+  /// After all of the cycle's frames.
+  void check_sending() noexcept;
   /// Holds the drives against what is asked, and goes on towards it.
   void advance(std::int64_t now_ns, ArmRequest request) noexcept;
   /// What the drives are asked instead: in a fault they stop, and are not enabled.
@@ -62,6 +72,7 @@ class ArmSupervision {
  private:
   void enter_state(ArmState state, std::int64_t now_ns) noexcept;
   void check_drives(ArmRequest request) noexcept;
+  void check_silence(const ArmFeedback& feedback) noexcept;
   void enable(std::int64_t now_ns) noexcept;
   void raise_of_drive(ArmFaultKind kind, const JointChannel& joint) noexcept;
   [[nodiscard]] bool all_enabled() const noexcept;
@@ -78,6 +89,9 @@ class ArmSupervision {
   canopen::HeartbeatWatch watch_;
   std::array<std::uint32_t, kMaxJoints> missing_cycles_{};  ///< in a row
   std::uint32_t stale_cycles_ = 0;                          ///< in a row without a new wrench
+  std::uint32_t silent_cycles_ = 0;                         ///< in a row without any answer
+  std::uint32_t refused_cycles_ = 0;                        ///< in a row with a refused frame
+  bool refused_ = false;                                    ///< in this cycle
 };
 
 }  // namespace tenon::hw

@@ -12,12 +12,18 @@ const Robot& checked(const Robot& robot) {
   return robot;
 }
 
+std::vector<JointChannel> channels_of(const Robot& robot) {
+  std::vector<JointChannel> channels;
+  for (const Joint& joint : robot.joints) channels.emplace_back(joint, robot.cycle_us);
+  return channels;
+}
+
 }  // namespace
 
 CanopenArm::CanopenArm(const Robot& robot, CanBus& bus)
     : bus_(bus),
       bring_up_(checked(robot)),
-      joints_(robot.joints.begin(), robot.joints.end()),
+      joints_(channels_of(robot)),
       supervision_(robot, joints_, counters_),
       intake_(robot, joints_, supervision_, counters_),
       output_(robot, bus, joints_, supervision_, counters_) {}
@@ -91,6 +97,7 @@ void CanopenArm::command(std::int64_t now_ns, ArmRequest request,
   const bool follow = was_enabled && state() == ArmState::kEnabled;
   output_.send_setpoints(supervision_.granted(request), follow, position);
   output_.send_heartbeat(now_ns);
+  supervision_.check_sending();
   bus_.flush();
 }
 

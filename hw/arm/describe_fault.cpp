@@ -206,6 +206,16 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
     case ArmFaultKind::kOtherMaster:
       return format("another master runs on this bus: 0x%03X (%s) came from it; stop it first",
                     fault.code, master_frame_name(fault.code));
+    case ArmFaultKind::kQueueFull:
+      return format(
+          "the transmit queue was full in %u cycles in a row, at most %u are allowed; check bus "
+          "load, bit rate and txqueuelen",
+          fault.code, ArmSupervision::kRefusedCycles);
+    case ArmFaultKind::kBusSilent:
+      return format(
+          "no node answered in %u cycles in a row, at most %u are allowed; check adapter, wiring "
+          "and whether the interface was down",
+          fault.code, ArmSupervision::kSilentCycles);
     case ArmFaultKind::kBusOff:
       return "the CAN controller went bus-off (too many errors); check wiring, termination and "
              "bit rate";

@@ -14,12 +14,13 @@ namespace tenon::hw {
 
 using cia402::DriveState;
 
-JointChannel::JointChannel(const Joint& joint)
+JointChannel::JointChannel(const Joint& joint, std::uint32_t cycle_us)
     : node_(joint.node),
       interpolated_(joint.mode == Joint::Mode::kInterpolatedPosition),
       counts_per_unit_(joint.counts_per_unit),
       zero_counts_(joint.zero_counts),
-      rated_effort_(joint.rated_effort) {}
+      rated_effort_(joint.rated_effort),
+      stop_patience_(static_cast<int>(std::ceil(1e6 * kStopPatience_s / cycle_us))) {}
 
 void JointChannel::reset() {
   seen_ = answered_ = reached_enabled_ = false;
@@ -73,7 +74,7 @@ std::uint16_t JointChannel::next_controlword(ArmRequest request) {
   if (stop_cycles_ == 0) {
     return cia402::next_controlword(state(), request, controlword_, interpolated_);
   }
-  if (stop_cycles_ <= kStopPatience) return tenon::canopen::kCommandQuickStop;
+  if (stop_cycles_ <= stop_patience_) return tenon::canopen::kCommandQuickStop;
   return tenon::canopen::kCommandDisableVoltage;
 }
 

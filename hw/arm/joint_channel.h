@@ -23,10 +23,12 @@ namespace tenon::hw {
 
 class JointChannel {
  public:
-  static constexpr int kStopPatience = 500;  ///< cycles; 0.5 s and more
+  /// More than a stop and a brake take, and less than the executor waits for drives to be off.
+  static constexpr double kStopPatience_s = 1.0;
 
   JointChannel() = default;
-  explicit JointChannel(const Joint& joint);
+  /// @param cycle_us from one update() to the next
+  JointChannel(const Joint& joint, std::uint32_t cycle_us);
 
   /// As after a reset of the drive.
   void reset();
@@ -39,8 +41,8 @@ class JointChannel {
   ///
   /// A drive in its quick stop that is to be disabled goes on ramping down and closes its brake by
   /// itself; disable voltage would let the axis go before. The same for a drive that may be on and
-  /// did not answer in this cycle. What is not off after kStopPatience cycles loses its voltage all
-  /// the same.
+  /// did not answer in this cycle. What is not off after kStopPatience_s loses its voltage all the
+  /// same.
   [[nodiscard]] bool update(ArmRequest request, bool follow, double setpoint);
   /// RPDO1 with both.
   [[nodiscard]] CanFrame command_frame() const;
@@ -65,6 +67,7 @@ class JointChannel {
   double counts_per_unit_ = 1.0;
   double zero_counts_ = 0.0;
   double rated_effort_ = 0.0;
+  int stop_patience_ = 0;  ///< cycles
 
   [[nodiscard]] std::uint16_t next_controlword(ArmRequest request);
 

@@ -44,6 +44,8 @@ enum class ArmFaultKind : std::uint8_t {
   kBusDown = 10,
   kBusOff = 11,
   kOtherMaster = 12,  ///< another master sends on the bus; code is the COB-ID that betrayed it
+  kQueueFull = 13,    ///< our own frames were refused; code: cycles in a row
+  kBusSilent = 14,    ///< nobody answered at all; code: cycles in a row
 };
 
 /// Plain data, so that real-time code can carry it. describe() in hw gives the line for people.

@@ -77,14 +77,33 @@ TEST(BusFaults, WhatLastsEndsTheRunByName) {
            Case{"bus-off:node=2,time_s=4", ArmFaultKind::kFeedbackMissing, 2},
            // It comes back, and is a fault all the same.
            Case{"interface-down:time_s=4,duration_s=0.01", ArmFaultKind::kBusDown, 0},
+           // Over before its effect could pass for a contact or a force.
+           Case{"queue-full:node=127,time_s=4,duration_s=0.006", ArmFaultKind::kQueueFull, 0},
+           Case{"queue-full:node=127,time_s=4", ArmFaultKind::kQueueFull, 0},
+           Case{"drop:time_s=4,duration_s=0.008", ArmFaultKind::kBusSilent, 0},
        }) {
     const FaultyRun run({wanted.spec});
     EXPECT_EQ(run.result.ending.reason, EndReason::kArmFault) << wanted.spec;
     EXPECT_EQ(run.result.ending.arm_fault.kind, wanted.kind) << run.result.reason;
     EXPECT_EQ(run.result.ending.arm_fault.node, wanted.node) << run.result.reason;
   }
-  const FaultyRun queue_full({"queue-full:node=127,time_s=4"});
-  EXPECT_NE(queue_full.result.ending.reason, EndReason::kPlanDone) << queue_full.result.reason;
+}
+
+// At any length of the cycle the arm, which knows the node, is heard before the executor's own
+// bound.
+TEST(BusFaults, ADeadSensorIsNamedByItsNodeAtAnyCycle) {
+  for (const std::uint32_t cycle_us : {2000U, 5000U, 10000U}) {
+    Cell cell = gantry_cell();
+    cell.robot.cycle_us = cycle_us;
+    cell.robot.response_lag_s = 2e-6 * cycle_us;
+    const auto result =
+        WholeRun(cell, box_task(), box_plan("1"), with_faults({"stale-force:node=4,time_s=4"}))
+            .run();
+    EXPECT_EQ(result.ending.reason, EndReason::kArmFault) << cycle_us << " us: " << result.reason;
+    EXPECT_EQ(result.ending.arm_fault.kind, ArmFaultKind::kSensorStale) << result.reason;
+    EXPECT_NE(result.reason.find("node 4 (force/torque sensor)"), std::string::npos)
+        << result.reason;
+  }
 }
 
 TEST(BusFaults, TheSameSeedStrikesTheSameFramesWhoeverElseDraws) {

@@ -52,7 +52,11 @@ class ArmParts : public testing::Test {
   CanBus& master = bus.attach();
   CanBus& listener = bus.attach();
   ArmCounters counters;
-  std::vector<JointChannel> joints{robot.joints.begin(), robot.joints.end()};
+  std::vector<JointChannel> joints = [this] {
+    std::vector<JointChannel> channels;
+    for (const Joint& joint : robot.joints) channels.emplace_back(joint, robot.cycle_us);
+    return channels;
+  }();
   ArmSupervision supervision{robot, joints, counters};
   ArmIntake intake{robot, joints, supervision, counters};
   ArmOutput output{robot, master, joints, supervision, counters};

@@ -35,6 +35,23 @@ TEST(StoppingDrives, OneThatStaysInItsQuickStopLosesItsVoltageInTheEnd) {
   EXPECT_EQ(gantry.nodes[2]->statusword, 0x0250);
 }
 
+// Whatever the cycle: well within the three seconds that the executor waits.
+TEST(StoppingDrives, ThePatienceWithItIsASecondOfCyclesOfAnyLength) {
+  for (const std::uint32_t cycle_us : {2000U, 10000U}) {
+    Robot robot = gantry_robot();
+    robot.cycle_us = cycle_us;
+    GantryOnBus gantry(robot);
+    gantry.nodes[2]->stays_in_quick_stop = true;
+    ASSERT_TRUE(gantry.prepare_and_enable());
+    for (int i = 0; i < 4; ++i) gantry.cycle(ArmRequest::kQuickStop);
+    int cycles = 0;
+    for (; cycles < 2000 && gantry.nodes[2]->statusword != 0x0250; ++cycles) {
+      gantry.cycle(ArmRequest::kDisabled);
+    }
+    EXPECT_NEAR(cycles, 1e6 / cycle_us, 3.0) << cycle_us;
+  }
+}
+
 TEST(StoppingDrives, OneWhoseAnswersAreLostIsStoppedAndSwitchedOffAllTheSame) {
   GantryOnBus gantry;
   ASSERT_TRUE(gantry.prepare_and_enable());
