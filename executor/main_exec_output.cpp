@@ -15,6 +15,13 @@ void StepPrinter::consume(const CycleRecord& record) {
   }
 }
 
+void HoldPrinter::consume(const CycleRecord& record) {
+  if (printed_) return;
+  const std::string line = hold_line(record, cell_);
+  printed_ = !line.empty();
+  if (printed_) std::fprintf(stderr, "tenon-exec: %s\n", line.c_str());
+}
+
 void print_opening(const Plan& plan, const Cell& cell, const DryRun& dry_run) {
   const hw::BusLoad load = hw::bus_load(cell.robot);
   std::printf("plan '%s', start '%s', %d steps; cell '%s', robot '%s'\n", plan.task_name.c_str(),

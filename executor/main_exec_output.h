@@ -24,6 +24,18 @@ class StepPrinter : public RecordConsumer {
   std::size_t printed_ = 0;
 };
 
+/// Says at once, on standard error, that the run is over and a joint held until the user stops; on
+/// the recorder's thread.
+class HoldPrinter : public RecordConsumer {
+ public:
+  explicit HoldPrinter(const Cell& cell) : cell_(cell) {}
+  void consume(const CycleRecord& record) override;
+
+ private:
+  Cell cell_;
+  bool printed_ = false;
+};
+
 /// What is about to run where, and how the dry run slowed it.
 void print_opening(const Plan& plan, const Cell& cell, const DryRun& dry_run);
 

@@ -84,8 +84,10 @@ TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* st
           robot(), logged_bus_ ? static_cast<CanBus&>(*logged_bus_) : *bus_)),
       recorder_(std::make_unique<Recorder>()),
       runner_(*arm_, task, recorder_.get(), {}),
-      telemetry_(outputs(options), robot().joints.size(), steps, *recorder_) {
+      telemetry_(outputs(options), robot().joints.size(), steps, *recorder_),
+      hold_printer_(task.cell()) {
   recorder_->add(telemetry_);
+  recorder_->add(hold_printer_);
   if (can_log_) recorder_->add(*can_log_);
   if (!options.trace.empty() && steps != nullptr) {
     recorder_->add(trace_.emplace(options.trace, *steps));

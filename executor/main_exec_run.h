@@ -12,6 +12,7 @@
 #include "executor/loop/control_task.h"
 #include "executor/loop/cycle_runner.h"
 #include "executor/main_exec_options.h"
+#include "executor/main_exec_output.h"
 #include "executor/motion/plan_runner.h"
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
@@ -70,6 +71,7 @@ class TaskRun {
   std::unique_ptr<Recorder> recorder_;
   CycleRunner runner_;
   Telemetry telemetry_;
+  HoldPrinter hold_printer_;
   std::optional<TraceWriter> trace_;
 };
 

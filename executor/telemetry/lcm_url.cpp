@@ -103,6 +103,15 @@ void check_lcm_url(const std::string& url) {
                    ": not an LCM URL; give udpm://ADDRESS:PORT?ttl=N, file://FILE or memq://");
 }
 
+void check_lcm_publishes(const std::string& url) {
+  const std::optional<Parts> parts = parts_of(url);
+  if (!parts || parts->provider != "file") return;
+  throw InputError("--lcm-url " + url +
+                   ": LCM does not tell what such a file lost on a full disk; write the log with "
+                   "--log " +
+                   parts->network);
+}
+
 void check_lcm_log(const std::string& url) {
   const std::optional<Parts> parts = parts_of(url);
   if (!parts || parts->provider != "file") return;

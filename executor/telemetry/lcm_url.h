@@ -10,6 +10,10 @@ namespace tenon::executor {
 /// may be left out) and options that LCM has, file://PATH, or memq://
 void check_lcm_url(const std::string& url);
 
+/// A log file is no place to publish to.
+/// @throws InputError for file://
+void check_lcm_publishes(const std::string& url);
+
 /// What is to be replayed must be a log: LCM would look for one in a pipe or a device for ever.
 /// @throws InputError where such a URL names no regular file
 void check_lcm_log(const std::string& url);

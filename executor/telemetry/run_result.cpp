@@ -217,4 +217,14 @@ std::string step_line(const StepReport& report) {
   return line;
 }
 
+std::string hold_line(const CycleRecord& record, const Cell& cell) {
+  if (record.state != State::kCatching || record.request != ArmRequest::kEnabled) return {};
+  const Ending ending{.reason = static_cast<EndReason>(record.end_reason),
+                      .index = record.end_index,
+                      .value = record.end_value,
+                      .bound = record.end_bound};
+  return describe(ending, Plan{}, cell) +
+         "; it is held under power: support it, then stop this program (Ctrl-C)";
+}
+
 }  // namespace tenon::executor

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <stdexcept>
 
 #include "shared/base/error.h"
 #include "shared/config/load.h"
@@ -18,6 +19,11 @@ constexpr std::size_t kFileMax_bytes = 16U << 20U;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what, int error) {
   throw InputError(file.string() + ": cannot be " + what + ": " + std::strerror(error));
+}
+
+/// The input was good, the disk took no more of what came of it.
+bool is_disks_fault(int error) {
+  return error == ENOSPC || error == EDQUOT || error == EFBIG || error == EIO;
 }
 
 /// A new file with these bytes on the disk. 0 or errno.
@@ -71,6 +77,9 @@ void write_file(const std::filesystem::path& file, std::span<const std::uint8_t>
   if (error == 0 && ::rename(temporary.c_str(), file.c_str()) != 0) error = errno;
   if (error != 0) {
     if (error != EEXIST) ::unlink(temporary.c_str());
+    if (is_disks_fault(error)) {
+      throw std::runtime_error(file.string() + ": cannot be written: " + std::strerror(error));
+    }
     fail(file, "written", error);
   }
   // The new name outlives a power cut only once its folder is on the disk too.

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 
+#include "executor/telemetry/run_result.h"
 #include "tests/support/faulty_options.h"
 #include "tests/support/planned.h"
 #include "tests/support/whole_run.h"
@@ -29,14 +31,33 @@ TEST(Brakes, OneThatDoesNotHoldIsNamedAndTheRunIsNotDone) {
   EXPECT_NE(result.reason.find("its brake does not hold"), std::string::npos) << result.reason;
 }
 
+// What tenon-exec prints at once.
+class FirstLine : public executor::CycleSink {
+ public:
+  explicit FirstLine(const Cell& cell) : cell_(cell) {}
+  void record(const executor::CycleRecord& record) noexcept override {
+    if (line.empty()) line = executor::hold_line(record, cell_);
+  }
+  std::string line;
+
+ private:
+  Cell cell_;
+};
+
 TEST(Brakes, WhereTheCellWantsItPowerComesBackUntilTheUserStops) {
   Cell cell = gantry_cell();
   cell.hold_if_brake_fails = true;
-  WholeRun run(cell, box_task(), box_plan("1"), with_faults({"brake-failure:node=3,time_s=9"}));
+  FirstLine told(cell);
+  WholeRun run(cell, box_task(), box_plan("1"), with_faults({"brake-failure:node=3,time_s=9"}),
+               &told);
   ASSERT_TRUE(run.prepare());
   while (run.cycle() && run.controller().state() != executor::State::kCatching) {
+    ASSERT_EQ(told.line, "");
   }
   ASSERT_EQ(run.controller().state(), executor::State::kCatching);
+  EXPECT_EQ(told.line.rfind("joint z moved by", 0), 0U) << told.line;
+  EXPECT_NE(told.line.find("its brake does not hold; it is held under power"), std::string::npos)
+      << told.line;
   for (int i = 0; i < 200; ++i) ASSERT_TRUE(run.cycle());
   const double held = run.result().truth.drives[kVertical].position;
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(run.cycle());
@@ -46,6 +67,22 @@ TEST(Brakes, WhereTheCellWantsItPowerComesBackUntilTheUserStops) {
   run.controller().request_stop();
   for (int i = 0; i < 2000 && run.cycle(); ++i) {
   }
+  EXPECT_TRUE(run.controller().finished());
+  EXPECT_EQ(run.result().ending.reason, EndReason::kBrakeFailed);
+}
+
+// An arm that is in a fault holds nothing: nobody has to wait for it.
+TEST(Brakes, AFaultOfTheArmEndsTheHolding) {
+  Cell cell = gantry_cell();
+  cell.hold_if_brake_fails = true;
+  WholeRun run(cell, box_task(), box_plan("1"),
+               with_faults({"brake-failure:node=3,time_s=9", "silent-node:node=4,time_s=40"}));
+  ASSERT_TRUE(run.prepare());
+  bool held = false;
+  for (int i = 0; i < 30'000 && run.cycle(); ++i) {
+    held = held || run.controller().state() == executor::State::kCatching;
+  }
+  EXPECT_TRUE(held);
   EXPECT_TRUE(run.controller().finished());
   EXPECT_EQ(run.result().ending.reason, EndReason::kBrakeFailed);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,17 @@ TEST_F(Recertify, RefusesWhatNobodyChecked) {
             std::string::npos);
   EXPECT_EQ(recertify(changed([](Plan& plan) { plan.latency_max_s = 1.0; })).status, 2);
   EXPECT_EQ(recertify(changed([](Plan& plan) { plan.contact_stiffness_Npm *= 10.0; })).status, 2);
+}
+
+// The input was good: no usage to mend, but a run that failed.
+TEST(InspectProcess, AFullDiskIsAFailureAndNoBadInput) {
+  const ScratchFolder folder;
+  const std::string json = folder.path() / "plan.json";
+  const Ended ended = run(folder, {"prlimit", "--fsize=3000:3000", executable("tenon-inspect"),
+                                   shared_plan("box_1_gantry3"), "--json", json});
+  EXPECT_EQ(ended.status, 1) << ended.err;
+  EXPECT_EQ(ended.err, "tenon-inspect: " + json + ": cannot be written: File too large\n");
+  EXPECT_FALSE(std::filesystem::exists(json));
 }
 
 }  // namespace

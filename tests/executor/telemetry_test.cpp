@@ -135,6 +135,18 @@ TEST(LcmUrl, ASlipOfThePenIsNoMissingRoute) {
   }
 }
 
+// LCM's file provider does not tell what a full disk cost.
+TEST(LcmUrl, ALogFileIsNoPlaceToPublishTo) {
+  std::vector<std::string> warnings;
+  try {
+    (void)open_telemetry("file://run.lcmlog?mode=w", "", warnings);
+    ADD_FAILURE() << "opened";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("--log run.lcmlog"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(RunResult, TheJsonTellsStepsReasonAndCycle) {
   Bench bench(touch_and_slide_plan());
   bench.arm.walls.push_back({0, +1, 0.13});
