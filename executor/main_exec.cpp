@@ -15,6 +15,7 @@
 #include "executor/main_exec_options.h"
 #include "executor/main_exec_output.h"
 #include "executor/main_exec_run.h"
+#include "executor/main_exec_steps.h"
 #include "executor/telemetry/run_result.h"
 #include "hw/bus_load/bus_load.h"
 #include "hw/bus_load/response_times.h"
@@ -31,10 +32,13 @@ std::atomic<bool> stop_asked{false};
 int run_plan(const Options& options, const Cell& cell, const DryRun& dry_run) {
   Controller::Parameters parameters;
   parameters.go_to_start = options.go_to_start;
+  parameters.step_by_step = options.step;
   Controller controller(cell, dry_run, parameters);
   TaskRun run(options, controller, &controller.runner(), stop_asked);
   StepPrinter printer(controller.runner());
   run.add(printer);
+  std::optional<StepByStep> word;
+  if (options.step) word.emplace(controller, stop_asked);
   run.run();
   return run.conclude(
       gather_result(controller, run.runner(), run.records_dropped(), run.arm_fault_text()));

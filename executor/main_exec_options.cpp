@@ -18,6 +18,7 @@ void add_work(CLI::App& app, Options& options) {
       app.add_option("--plan", options.plan, "plan file (.tnp)"),
       app.add_flag("--dry-run", options.dry_run,
                    "only go through the plan with the cell's arm in mind; needs no --can"),
+      app.add_flag("--step", options.step, "wait for Enter before every step of the plan"),
       app.add_flag("--go-to-start", options.go_to_start, "move to the plan's start first"),
       app.add_option("--trace", options.trace, "inputs of every guarded move, to replay")};
   app.add_option("--can", options.can, "socketcan:can0, slcan:/dev/ttyACM0 or slcan://HOST:PORT");
@@ -78,7 +79,10 @@ void check_outputs(const Options& options) {
       throw InputError("--can " + options.can +
                        ": listens for an arm that would have to call; give slcan://HOST:PORT");
     }
-    if (options.lcm_url != "none") check_lcm_url(options.lcm_url);
+    if (options.lcm_url != "none") {
+      check_lcm_url(options.lcm_url);
+      check_lcm_publishes(options.lcm_url);
+    }
     check_writable(options.black_box);
   }
   if (!options.json.empty() && options.json != "-") check_writable(options.json);

@@ -14,6 +14,7 @@ struct Options {
   std::string rt = "prefer";
   int cpu = -1;
   bool go_to_start = false;
+  bool step = false;  ///< by step
   bool dry_run = false;
   bool identify_payload = false;
   std::string identify_contact;  ///< direction

@@ -13,6 +13,11 @@ void StepPrinter::consume(const CycleRecord& record) {
     std::printf("%s\n", step_line(runner_.report(printed_)).c_str());
     std::fflush(stdout);
   }
+  if (record.awaited_step == awaited_) return;
+  awaited_ = record.awaited_step;
+  if (awaited_ < 0) return;
+  std::printf("%s\n", waiting_line(record, runner_.plan()).c_str());
+  std::fflush(stdout);
 }
 
 void HoldPrinter::consume(const CycleRecord& record) {

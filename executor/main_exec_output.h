@@ -12,7 +12,7 @@
 
 namespace tenon::executor {
 
-/// Prints a line for every finished step, on the recorder's thread.
+/// Prints a line for every finished step, and for one that waits, on the recorder's thread.
 class StepPrinter : public RecordConsumer {
  public:
   /// @param runner whose reports are printed; must outlive this
@@ -22,6 +22,7 @@ class StepPrinter : public RecordConsumer {
  private:
   const PlanRunner& runner_;
   std::size_t printed_ = 0;
+  std::int32_t awaited_ = -1;
 };
 
 /// Says at once, on standard error, that the run is over and a joint held until the user stops; on

@@ -120,7 +120,16 @@ ControlTask::Turn Controller::approach() {
   return arrived ? Turn(Event::kAtStart) : Turn();
 }
 
+// A word that was given before the step began to wait was not meant for it.
+bool Controller::waits_for_the_user() noexcept {
+  const bool gate = parameters_.step_by_step && runner_.between_moves();
+  if (gate && !waits_) allowed_.store(false, std::memory_order_relaxed);
+  waits_ = gate && !allowed_.load(std::memory_order_relaxed);
+  return waits_;
+}
+
 ControlTask::Turn Controller::run(const ArmFeedback& /*feedback*/) {
+  if (waits_for_the_user()) return {};
   GuardedMove::Input input;
   input.time_ns = motion_ns();
   input.pose = tool_.seen(supervision().tool());
@@ -218,6 +227,8 @@ void Controller::write_motion(CycleRecord& r) {
   if (seen_) r.pose = data_of(*seen_);
   seen_.reset();
   r.phase = phase_;
+  const bool awaits = waits_ && state() == State::kRunning;
+  r.awaited_step = awaits ? static_cast<std::int32_t>(runner_.next_step()) : -1;
   r.step = r.moving ? static_cast<std::int32_t>(runner_.step()) : -1;
   r.steps_done = static_cast<std::uint32_t>(runner_.report_count());
   r.signature_before = runner_.signature_before().bits;

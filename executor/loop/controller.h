@@ -6,6 +6,7 @@
 //
 // Real-time but for the constructor: no allocation, no lock, no throw. One thread.
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 
@@ -25,6 +26,7 @@ class Controller : public ControlTask {
  public:
   struct Parameters : ControlTask::Parameters {
     bool go_to_start = false;
+    bool step_by_step = false;  ///< every step waits for allow_step()
     double start_tolerance_m = 2e-3;
     double start_tolerance_rad = 0.02;
     double start_tolerance_joint = 0.3;  ///< m or rad; more is another branch of the arm
@@ -37,6 +39,9 @@ class Controller : public ControlTask {
   /// The same after a dry run of its own.
   Controller(const Cell& cell, const Plan& plan, const Parameters& parameters)
       : Controller(cell, dry_run(plan, cell), parameters) {}
+
+  /// The step that waits may begin; what is said while none waits is forgotten. Any thread.
+  void allow_step() noexcept { allowed_.store(true, std::memory_order_relaxed); }
 
   [[nodiscard]] const PlanRunner& runner() const noexcept { return runner_; }
   /// What is executed: the dry run's.
@@ -53,6 +58,7 @@ class Controller : public ControlTask {
   void write_motion(CycleRecord& record) override;
 
   [[nodiscard]] Turn start_approach();
+  [[nodiscard]] bool waits_for_the_user() noexcept;
   void leave_the_tool();
   void yield_here();
 
@@ -70,6 +76,9 @@ class Controller : public ControlTask {
   Parameters parameters_;
   CompliantTool tool_;
   PlanRunner runner_;
+
+  std::atomic<bool> allowed_{false};
+  bool waits_ = false;  ///< with the tool at rest, as compliant as ever, for allow_step()
 
   int touch_samples_ = 0;
   GuardedMove::Setpoint setpoint_;

@@ -45,6 +45,9 @@ class PlanRunner {
   [[nodiscard]] Status status() const { return status_; }
   /// The step that the last update() belonged to.
   [[nodiscard]] std::size_t step() const { return step_; }
+  /// The next update() begins a move: that of next_step().
+  [[nodiscard]] bool between_moves() const { return status_ == Status::kRunning && begin_next_; }
+  [[nodiscard]] std::size_t next_step() const { return next_; }
   /// That update() was the first of its move.
   [[nodiscard]] bool move_started() const { return move_started_; }
   /// Contacts held as the current move began, and as they stand.

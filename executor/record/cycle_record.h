@@ -55,6 +55,7 @@ struct CycleRecord {
   bool wrench_fresh = false;  ///< a new sample, and not a distrusted one
   GuardedMove::Phase phase = GuardedMove::Phase::kDone;
   std::int32_t step = -1;
+  std::int32_t awaited_step = -1;  ///< that waits for the user's word; -1: none
   /// Reports that PlanRunner holds by now. They are written once and before this record, so who
   /// gets the record may read them.
   std::uint32_t steps_done = 0;

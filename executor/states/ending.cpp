@@ -186,9 +186,8 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kNotAtStart:
       return format("the tool's %s", axis_name(e.index)) + off_start(axis_unit(e.index), e, plan);
     case EndReason::kTareUnsteady:
-      return tare_unsteady(e);
     case EndReason::kTareOffset:
-      return tare_offset(e);
+      return e.reason == EndReason::kTareOffset ? tare_offset(e) : tare_unsteady(e);
     case EndReason::kNotAtGoal:
       return not_at_goal(e, plan);
     case EndReason::kContactOnApproach:

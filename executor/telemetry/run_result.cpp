@@ -217,6 +217,12 @@ std::string step_line(const StepReport& report) {
   return line;
 }
 
+std::string waiting_line(const CycleRecord& record, const Plan& plan) {
+  const auto step = static_cast<std::size_t>(record.awaited_step);
+  return format("step %2d waits: %s; Enter runs it, Ctrl-C stops", record.awaited_step,
+                displacement_text(plan.steps[step].displacement).c_str());
+}
+
 std::string hold_line(const CycleRecord& record, const Cell& cell) {
   if (record.state != State::kCatching || record.request != ArmRequest::kEnabled) return {};
   const Ending ending{.reason = static_cast<EndReason>(record.end_reason),

@@ -62,6 +62,9 @@ struct RunResult {
 /// "step  2: +x 0.100 m -> contact (-x) after 0.0312 m, 6.8 N, 0.84 s"
 [[nodiscard]] std::string step_line(const StepReport& report);
 
+/// "step  2 waits: +x 0.100 m; Enter runs it, Ctrl-C stops". Of a cycle in which a step waits.
+[[nodiscard]] std::string waiting_line(const CycleRecord& record, const Plan& plan);
+
 /// Of a run that is over but for a joint which its brake does not hold, and which is therefore held
 /// under power until the user stops: what happened, and what to do. Empty for any other cycle.
 [[nodiscard]] std::string hold_line(const CycleRecord& record, const Cell& cell);
