@@ -57,6 +57,10 @@ constexpr const char* arm_fault_name(ArmFaultKind kind) {
       return "bus_off";
     case ArmFaultKind::kOtherMaster:
       return "other_master";
+    case ArmFaultKind::kQueueFull:
+      return "queue_full";
+    case ArmFaultKind::kBusSilent:
+      return "bus_silent";
   }
   return nullptr;
 }
@@ -127,6 +131,10 @@ constexpr std::array kTable = {
            EndState::kOffByDrives),
     of_arm(ArmFaultKind::kOtherMaster, "every frame that only a master sends", kAtOnce,
            "the frame"),
+    of_arm(ArmFaultKind::kQueueFull, "more than 2 cycles in a row whose frames are refused",
+           {.cycles = 5}),
+    of_arm(ArmFaultKind::kBusSilent, "more than 3 cycles in a row in which nobody answers",
+           {.cycles = 6}),
     fault(EndReason::kArmNotEnabled, "arm_not_enabled", "state of the arm, every cycle", kAtOnce),
     fault(EndReason::kEnableTimeout, "enable_timeout", "state of the arm while it is enabled",
           {.cycles = 1, .time_s = kEnableTimeout_s}, "the first cycle", EndManner::kHold),

@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace tenon::executor {
-namespace {
-
-// The arm counts a sensor's silence in cycles, and knows its node: where cycles are long, too, it
-// is to be heard first.
-
-}  // namespace
 
 Supervision::Supervision(const Cell& cell, const ToolKinematics& kinematics,
                          const Parameters& parameters)
@@ -18,6 +12,8 @@ Supervision::Supervision(const Cell& cell, const ToolKinematics& kinematics,
       parameters_(parameters),
       wrench_(cell),
       following_watch_(cell.robot) {
+  // The arm counts a sensor's silence in cycles, and knows its node: where cycles are long, too, it
+  // is to be heard first.
   const double cycle_s = 1e-6 * cell.robot.cycle_us;
   parameters_.wrench_age_max_s = std::max(parameters_.wrench_age_max_s, kWrenchCyclesMin * cycle_s);
   parameters_.blind_max_s = std::max(parameters_.blind_max_s, kBlindCyclesMin * cycle_s);

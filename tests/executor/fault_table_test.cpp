@@ -100,7 +100,7 @@ TEST(FaultTable, BoundsInCyclesAreTheRobots) {
   EXPECT_EQ(of_arm(ArmFaultKind::kHeartbeatLost), 31 + 2);
   EXPECT_EQ(of_arm(ArmFaultKind::kUnexpectedReset), 10 + 2);
   EXPECT_EQ(of_arm(ArmFaultKind::kBusDown), 2);
-  EXPECT_EQ(bound_cycles(*fault_row(EndReason::kWrenchMissing), robot), 5 + 2);
+  EXPECT_EQ(bound_cycles(*fault_row(EndReason::kWrenchMissing), robot), 5 + 8 + 2);
   EXPECT_EQ(bound_cycles(*fault_row(EndReason::kPlanFailed), robot), std::nullopt);
 }
 

@@ -25,7 +25,8 @@ Cell cell_with(std::uint32_t cycle_us, double lag_s, double contact_stiffness_Np
 
 // A plan of one step as it would be drafted.
 Plan plan_of(const CellFit& fit) {
-  const std::vector<Vector6> way = {Vector6::Unit(0)};
+  const std::vector<Vector6> way = {
+      displacement_between(fit.task.starts.front().pose, fit.task.goal)};
   return draft_plan(fit.task, fit.task.starts.front(), fit.assumptions, way);
 }
 

@@ -14,8 +14,8 @@
 
 #include "shared/base/random.h"
 #include "shared/base/text.h"
+#include "shared/base/wilson.h"
 #include "sim/cell/virtual_arm/environment_offset.h"
-#include "sim/evaluation/statistics.h"
 #include "tests/chain/fault_matrix/driven_run.h"
 
 namespace tenon::tests {
@@ -103,7 +103,7 @@ void run_all_drawn(std::uint64_t count) {
   const Ground ground("gantry3");
   Tally tally;
   for (std::uint64_t number = 1; number <= count; ++number) run_drawn(ground, number, tally);
-  const sim::Interval wrong = sim::wilson_interval(static_cast<std::size_t>(tally.wrong), count);
+  const Interval wrong = wilson_interval(static_cast<std::size_t>(tally.wrong), count);
   std::printf(
       "%d runs: %d done, %d stopped by name, %d done but wrong, at most %.2f %% of all "
       "(Wilson, 95 %%)\n",
