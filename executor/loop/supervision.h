@@ -21,7 +21,7 @@ class Supervision {
  public:
   struct Parameters {
     int feedback_misses_max = kFeedbackMissesMax;  ///< cycles in a row
-    double wrench_age_max_s = kWrenchAgeMax_s;  ///< at least kWrenchCyclesMin cycles
+    double wrench_age_max_s = kWrenchAgeMax_s;     ///< at least kWrenchCyclesMin cycles
     /// Without a sample that guarded moves may see; at least kBlindCyclesMin cycles.
     double blind_max_s = kBlindMax_s;
   };

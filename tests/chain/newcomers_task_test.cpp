@@ -46,6 +46,19 @@ PlanReport planned(const std::string& text) {
   return planner::make_plan(task, task.starts.front(), sim::OdeRollout(task), options);
 }
 
+TEST(NewcomersTask, WhatItLeavesOutFollowsFromItsSizes) {
+  const tests::ScratchFolder folder;
+  const Task task = load_task(folder.put("task.yaml", kPocket));
+  EXPECT_TRUE(task.guide_moves);
+  EXPECT_DOUBLE_EQ(task.step_m, 1.2 * task.particle_sigmas * 0.008);
+  EXPECT_GE(task.long_step_m, 0.2);
+  EXPECT_GT(task.attractor_samples, 0U);
+  EXPECT_EQ(task.goal_uncertainty_m2, 0.0);  // for the planner to say
+  EXPECT_EQ(task.w1, 3.0);
+  const std::string moves = "primitives: {step_m: 0.1, long_step_m: 1.0, direct_reach_m: 0.3}\n";
+  EXPECT_FALSE(load_task(folder.put("said.yaml", kPocket + moves)).guide_moves);
+}
+
 TEST(NewcomersTask, ASquarePocketInSpaceIsPlannedWithDefaultKeys) {
   const PlanReport report = planned(kPocket);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;

@@ -112,23 +112,6 @@ TEST(LoadTask, ReadsEveryValue) {
   EXPECT_EQ(load_task(folder.put("fast.yaml", fast)).rollout_step_us, 500);
 }
 
-TEST(LoadTask, WithoutPrimitivesSearchAndUncertaintyItMakesItsOwn) {
-  const ScratchFolder folder;
-  std::string text = replaced(kTinyTask, ", uncertainty_m2: 2e-6", "");
-  text = replaced(
-      text, "primitives: {step_m: 0.1, step_rad: 0.05, long_step_m: 1.0, direct_reach_m: 0.3}\n",
-      "");
-  text = replaced(text, "search: {w1: 3, w2: 1.5, move_weight: 0}\n", "");
-  const Task task = load_task(folder.put("own.yaml", text));
-  EXPECT_TRUE(task.guide_moves);
-  EXPECT_GT(task.step_m, 0.0);
-  EXPECT_GE(task.long_step_m, 3.0);
-  EXPECT_EQ(task.goal_uncertainty_m2, 0.0);
-  EXPECT_EQ(task.w1, 3.0);
-  EXPECT_GT(task.attractor_samples, 0U);
-  EXPECT_FALSE(load_task(folder.put("said.yaml", kTinyTask)).guide_moves);
-}
-
 TEST(LoadTask, HashIsThatOfTheBytes) {
   const ScratchFolder folder;
   const std::uint64_t hash = load_task(folder.put("a.yaml", kTinyTask)).hash;

@@ -6,7 +6,7 @@
 Writes FOLDER/NN_KIND.yaml, N of them (20), kinds in turn. Equal seeds draw equal tasks. Lengths are in
 metres; clearance is 0.7 to 2 mm, the standard deviation of the start 5 to 15 mm along x, y and z. The
 tasks have no `search` and no `primitives`, and goals no `uncertainty_m2`: that is what is tested.
-Seed 1 is for development, seed 2 for the results in planner/README.md.
+Seed 1 is for development; judge by another.
 """
 
 import argparse
