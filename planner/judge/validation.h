@@ -19,7 +19,9 @@ namespace tenon::planner {
 struct Draw {
   double mahalanobis = 0.0;  ///< how far out the start is, standard deviations
   Chain chain;
-  bool at_goal = false;  ///< the plan was done and its tool within d_tol of the goal
+  /// The plan was done and its tool inserted, within d_tol of the goal. Else the draw counts as
+  /// missed.
+  bool at_goal = false;
 };
 
 struct Validation {
