@@ -5,6 +5,14 @@
 #include "shared/task/inserted.h"
 
 namespace tenon::planner {
+namespace {
+
+// What an arm adds to a plan's own errors needs room, too: a plan that ends at the rim of the
+// tolerance is done, and wrong now and then. Where the moves are the task's own choice there may be
+// none that end nearer.
+constexpr double kOfTolerance = 0.7;
+
+}  // namespace
 
 BeliefSummary summarise(const Belief& belief, const Task& task) {
   const Metric metric = metric_of(task);
@@ -28,8 +36,9 @@ double edge_cost(const BeliefSummary& from, const BeliefSummary& to, const Task&
 }
 
 bool at_goal(const BeliefSummary& belief, const Task& task) {
-  return belief.farthest_m <= task.goal_tolerance_m &&
-         distance(belief.mean, task.goal, metric_of(task)) <= task.goal_tolerance_m &&
+  const double within_m = (task.guide_moves ? kOfTolerance : 1.0) * task.goal_tolerance_m;
+  return belief.farthest_m <= within_m &&
+         distance(belief.mean, task.goal, metric_of(task)) <= within_m &&
          belief.uncertainty_m2 <= task.goal_uncertainty_m2 && belief.inserted;
 }
 

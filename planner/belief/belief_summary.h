@@ -25,7 +25,8 @@ struct BeliefSummary {
 [[nodiscard]] double edge_cost(const BeliefSummary& from, const BeliefSummary& to,
                                const Task& task);
 
-/// d(mean, goal) <= d_tol, u <= u_tol, and every particle by itself within d_tol and inserted.
+/// d(mean, goal) <= d_tol, u <= u_tol, and every particle by itself within d_tol and inserted;
+/// within 0.7 d_tol where the task has guide_moves.
 [[nodiscard]] bool at_goal(const BeliefSummary& belief, const Task& task);
 
 }  // namespace tenon::planner
