@@ -50,7 +50,7 @@ MAY_INCLUDE = {
     "hw_arm": HW_ARM,
     "hw_load": HW_ARM | {"hw_arm"},
     "tenon-plan": PLANNER | {"shared_config", "shared_system", "planner", "planner_report", "sim_physics"},
-    "tenon-inspect": PLANNER | {"shared_config", "planner", "planner_report", "sim_physics"},
+    "tenon-inspect": PLANNER | {"shared_config", "shared_system", "planner", "planner_report", "sim_physics"},
     "tenon-exec": LOOP | HW_ARM | {"shared_config", "shared_system", "executor", "executor_loop",
                                    "executor_identification", "executor_telemetry", "hw_can", "hw_arm", "hw_load"},
     "tenon-monitor": LOOP | {"shared_config", "shared_system", "executor_loop", "executor_identification",
