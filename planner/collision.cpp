@@ -24,9 +24,9 @@ std::string collision(const Task& task, const Start& start, Rollout& rollout) {
   const Belief belief = cross_polytope(task, start);
   const auto inside =
       std::find_if(belief.particles.begin(), belief.particles.end(),
-                   [&](const Particle& particle) { return rollout.in_collision(particle.pose); });
+                   [&](const Particle& particle) { return rollout.in_collision(particle.tool()); });
   if (inside != belief.particles.end()) {
-    return what + where(inside->pose.position_m) +
+    return what + where(inside->tool().position_m) +
            format(", %g standard deviations out,", task.particle_sigmas) + overlaps +
            ": move the start or lower its sigma";
   }

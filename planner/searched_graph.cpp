@@ -10,7 +10,7 @@ namespace {
 constexpr double kForeseen_m = 1e-4;
 
 bool same_start(const Particle& a, const Particle& b) {
-  return a.pose == b.pose && a.physics == b.physics;
+  return a.pose == b.pose && a.environment == b.environment && a.physics == b.physics;
 }
 
 }  // namespace

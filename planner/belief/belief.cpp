@@ -13,11 +13,11 @@ Eigen::Quaterniond mean_orientation(const Belief& belief) {
   // Newton's iteration on the rotation group; quadratic, a few steps.
   constexpr int kMaxIterations = 32;
   constexpr double kConverged_rad = 1e-13;
-  Eigen::Quaterniond mean = belief.particles.front().pose.orientation;
+  Eigen::Quaterniond mean = belief.particles.front().tool().orientation;
   for (int i = 0; i < kMaxIterations; ++i) {
     Vector3 correction_rad = Vector3::Zero();
     for (const Particle& particle : belief.particles) {
-      correction_rad += rotation_vector(particle.pose.orientation * mean.conjugate());
+      correction_rad += rotation_vector(particle.tool().orientation * mean.conjugate());
     }
     correction_rad /= static_cast<double>(belief.particles.size());
     if (correction_rad.norm() < kConverged_rad) break;
@@ -34,6 +34,16 @@ std::int64_t cell(double value, double size) {
 
 Metric metric_of(const Task& task) { return {task.orientation_weight}; }
 
+Particle particle_off(const Vector6& off, const Task& task, const Start& start,
+                      const PhysicalParameters& physics) {
+  Vector6 turn = Vector6::Zero();
+  turn.tail<3>() = -off.tail<3>();
+  return {{start.pose.position_m + off.head<3>(), start.pose.orientation},
+          {},
+          physics,
+          environment_pose(turn, task.error_about_m)};
+}
+
 Belief cross_polytope(const Task& task, const Start& start) {
   Belief belief;
   // The two tips of an axis have both extremes of friction, and the next axis has them the other
@@ -46,9 +56,8 @@ Belief cross_polytope(const Task& task, const Start& start) {
       Vector6 displacement = Vector6::Zero();
       displacement[axis] = sign * offset;
       const double friction = slippery ? task.friction.low : task.friction.high;
-      belief.particles.push_back({displaced(start.pose, displacement),
-                                  {},
-                                  {friction, task.contact_stiffness_Npm, task.oversize_m}});
+      belief.particles.push_back(particle_off(
+          displacement, task, start, {friction, task.contact_stiffness_Npm, task.oversize_m}));
       slippery = !slippery;
     }
     slippery = !slippery;
@@ -57,7 +66,7 @@ Belief cross_polytope(const Task& task, const Start& start) {
 }
 
 Belief single_particle(const Task& task, const Start& start) {
-  return {{{start.pose, {}, {task.friction.nominal, task.contact_stiffness_Npm}}}};
+  return {{{start.pose, {}, {task.friction.nominal, task.contact_stiffness_Npm}, {}}}};
 }
 
 Belief start_belief(const Task& task, const Start& start, PlanMethod method) {
@@ -66,7 +75,7 @@ Belief start_belief(const Task& task, const Start& start, PlanMethod method) {
 
 Pose mean_pose(const Belief& belief) {
   Pose mean;
-  for (const Particle& particle : belief.particles) mean.position_m += particle.pose.position_m;
+  for (const Particle& particle : belief.particles) mean.position_m += particle.tool().position_m;
   mean.position_m /= static_cast<double>(belief.particles.size());
   mean.orientation = mean_orientation(belief);
   return mean;
@@ -77,7 +86,7 @@ double uncertainty(const Belief& belief, const Metric& metric) {
   double position_m2 = 0.0;
   double orientation_rad2 = 0.0;
   for (const Particle& particle : belief.particles) {
-    const Vector6 off = displacement_between(mean, particle.pose);
+    const Vector6 off = displacement_between(mean, particle.tool());
     position_m2 += off.head<3>().squaredNorm();
     orientation_rad2 += off.tail<3>().squaredNorm();
   }
@@ -92,9 +101,11 @@ double distance(const Pose& a, const Pose& b, const Metric& metric) {
 
 void append_cell(const Particle& particle, double cell_m, double cell_rad,
                  std::vector<std::int64_t>& key) {
-  const Vector3 turn_rad = rotation_vector(particle.pose.orientation);
-  for (int i = 0; i < 3; ++i) key.push_back(cell(particle.pose.position_m[i], cell_m));
-  for (int i = 0; i < 3; ++i) key.push_back(cell(turn_rad[i], cell_rad));
+  for (const Pose* pose : {&particle.pose, &particle.environment}) {
+    const Vector3 turn_rad = rotation_vector(pose->orientation);
+    for (int i = 0; i < 3; ++i) key.push_back(cell(pose->position_m[i], cell_m));
+    for (int i = 0; i < 3; ++i) key.push_back(cell(turn_rad[i], cell_rad));
+  }
   key.push_back(particle.signature.bits);
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.friction));
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.contact_stiffness_Npm));

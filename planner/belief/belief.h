@@ -24,6 +24,12 @@ struct Metric {
 
 [[nodiscard]] Metric metric_of(const Task& task);
 
+/// A tool that stands at its nominal start, seen by an environment that is off: nothing touches.
+/// @param off of the tool, along the task's axes and about them at the task's error_about_m; the
+/// environment's error is as much the other way
+[[nodiscard]] Particle particle_off(const Vector6& off, const Task& task, const Start& start,
+                                    const PhysicalParameters& physics);
+
 /// The tips of the cross-polytope: nominal +- c_p sigma along every search coordinate that has a
 /// sigma; the nominal pose alone where none has. Nothing touches. Friction is uncertain too: the
 /// tips take turns between its extremes.
@@ -36,7 +42,8 @@ struct Metric {
 /// What a method plans for: all of the cross-polytope, or the single particle.
 [[nodiscard]] Belief start_belief(const Task& task, const Start& start, PlanMethod method);
 
-/// Mean position, and the rotation from which the rotation vectors to all others sum up to zero.
+/// Of the tools in the task frame as it really stands: mean position, and the rotation from which
+/// the rotation vectors to all others sum up to zero.
 [[nodiscard]] Pose mean_pose(const Belief& belief);
 
 /// u = Tr Cov(position) + w_o Tr Cov(orientation), population covariances, the orientation as

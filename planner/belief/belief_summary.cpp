@@ -18,10 +18,11 @@ BeliefSummary summarise(const Belief& belief, const Task& task) {
   const Metric metric = metric_of(task);
   BeliefSummary summary{mean_pose(belief), uncertainty(belief, metric)};
   for (const Particle& particle : belief.particles) {
-    const Vector6 off = displacement_between(summary.mean, particle.pose);
+    const Pose tool = particle.tool();
+    const Vector6 off = displacement_between(summary.mean, tool);
     summary.spread = summary.spread.cwiseMax(off.cwiseAbs());
-    summary.farthest_m = std::max(summary.farthest_m, distance(particle.pose, task.goal, metric));
-    summary.inserted = summary.inserted && inserted(task, particle.pose);
+    summary.farthest_m = std::max(summary.farthest_m, distance(tool, task.goal, metric));
+    summary.inserted = summary.inserted && inserted(task, tool);
   }
   return summary;
 }

@@ -30,7 +30,8 @@ SuccessorEngine::End SuccessorEngine::simulate(Rollout& rollout, const Job& job)
   move.displacement = job.displacement;
   const RolloutResult result = rollout.simulate(job.particle, move, step_us_);
   if (!result.valid || result.move.outcome == Outcome::kTimeout) return std::nullopt;
-  return Particle{result.move.pose, result.move.signature, job.particle.physics};
+  return Particle{result.move.pose, result.move.signature, job.particle.physics,
+                  job.particle.environment};
 }
 
 void SuccessorEngine::refuse(const Particle& particle, const Vector6& displacement) {

@@ -20,7 +20,7 @@ constexpr double kPoseAgreement_rad = 0.2 * std::numbers::pi / 180.0;
 
 Belief ends(const std::vector<Chain>& chains) {
   Belief belief;
-  for (const Chain& chain : chains) belief.particles.push_back({chain.end(), {}, {}});
+  for (const Chain& chain : chains) belief.particles.push_back({chain.end(), {}, {}, {}});
   return belief;
 }
 
@@ -91,7 +91,7 @@ double cost_of(const std::vector<Chain>& chains, const Task& task) {
     Belief belief;
     for (const Chain& chain : chains) {
       if (i > chain.moves.size()) return 0.0;
-      belief.particles.push_back({i == 0 ? chain.start.pose : chain.moves[i - 1].pose, {}, {}});
+      belief.particles.push_back({chain.tool(i), {}, {}, {}});
     }
     nodes.push_back(summarise(belief, task));
     if (i == chains.front().moves.size()) break;

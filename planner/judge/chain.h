@@ -20,8 +20,12 @@ struct Chain {
   bool done = false;                               ///< the plan ended in kSuccessorDone
   std::string failure;  ///< otherwise why it stopped, in the last of the steps
 
-  /// Where the tool rests now.
-  [[nodiscard]] const Pose& end() const { return moves.empty() ? start.pose : moves.back().pose; }
+  /// Where the tool rests after so many moves, in the task frame as it really stands.
+  [[nodiscard]] Pose tool(std::size_t after) const {
+    return after == 0 ? start.tool() : seen_from(start.environment, moves[after - 1].pose);
+  }
+  /// Where it rests now, likewise.
+  [[nodiscard]] Pose end() const { return tool(moves.size()); }
 };
 
 [[nodiscard]] Chain run_chain(Rollout& rollout, const Plan& plan, const Particle& start,

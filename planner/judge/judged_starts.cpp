@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "planner/belief/belief.h"
 #include "shared/base/random.h"
 
 namespace tenon::planner {
@@ -34,10 +35,10 @@ JudgedStart draw_place(Random& random, const Task& task, const Start& start, Rol
       squares += z * z;
       offset[axis] = z * start.sigma[axis];
     }
-    drawn.particle.pose = displaced(start.pose, offset);
+    drawn.particle = particle_off(offset, task, start, {});
     drawn.mahalanobis = std::sqrt(squares);
     if (drawn.mahalanobis > reach_sigmas(task)) continue;
-    if (!rollout.in_collision(drawn.particle.pose)) break;
+    if (!rollout.in_collision(drawn.particle.tool())) break;
   }
   return drawn;
 }
@@ -69,9 +70,12 @@ std::vector<JudgedStart> starts_at(double sigmas, const std::vector<PhysicalPara
                                    const Task& task, const Start& start, Rollout& rollout) {
   std::vector<JudgedStart> starts;
   for (const Vector6& direction : rim_directions(task, start)) {
-    const Pose pose = displaced(start.pose, sigmas * direction.cwiseProduct(start.sigma));
-    if (rollout.in_collision(pose)) continue;
-    for (const PhysicalParameters& one : physics) starts.push_back({{pose, {}, one}, sigmas});
+    Particle particle = particle_off(sigmas * direction.cwiseProduct(start.sigma), task, start, {});
+    if (rollout.in_collision(particle.tool())) continue;
+    for (const PhysicalParameters& one : physics) {
+      particle.physics = one;
+      starts.push_back({particle, sigmas});
+    }
   }
   return starts;
 }

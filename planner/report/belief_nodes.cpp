@@ -14,7 +14,7 @@ std::vector<BeliefNode> nodes_of(const std::vector<Chain>& chains, const Task& t
   for (std::size_t i = 0; i <= count; ++i) {
     Belief belief;
     for (const Chain& chain : chains) {
-      belief.particles.push_back({i == 0 ? chain.start.pose : chain.moves[i - 1].pose, {}, {}});
+      belief.particles.push_back({chain.tool(i), {}, {}, {}});
     }
     BeliefNode node;
     const Pose mean = mean_pose(belief);

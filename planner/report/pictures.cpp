@@ -17,11 +17,17 @@ constexpr std::array<const char*, 8> kColours = {"#1f77b4", "#d62728", "#2ca02c"
 
 std::string colour(std::size_t particle) { return kColours[particle % kColours.size()]; }
 
+std::vector<Vector3> path_of(const Chain& chain) {
+  std::vector<Vector3> path;
+  for (std::size_t i = 0; i <= chain.moves.size(); ++i) path.push_back(chain.tool(i).position_m);
+  return path;
+}
+
 /// The nominal start, and wherever a step takes a particle.
 std::vector<Vector3> tools_m(const ReportData& data) {
   std::vector<Vector3> tools_m = {data.plan.start.position_m};
   for (const Chain& chain : data.chains) {
-    for (const GuardedMove::Result& move : chain.moves) tools_m.push_back(move.pose.position_m);
+    for (const Vector3& tool_m : path_of(chain)) tools_m.push_back(tool_m);
   }
   return tools_m;
 }
@@ -54,12 +60,6 @@ std::string part_at(const Task& task, const Canvas& canvas, const Pose& pose, co
   return svg;
 }
 
-std::vector<Vector3> path_of(const Chain& chain) {
-  std::vector<Vector3> path = {chain.start.pose.position_m};
-  for (const GuardedMove::Result& move : chain.moves) path.push_back(move.pose.position_m);
-  return path;
-}
-
 }  // namespace
 
 std::string overview(const ReportData& data, const drawing::View& view) {
@@ -88,8 +88,8 @@ std::string step_picture(const ReportData& data, const drawing::View& view, std:
   svg += part_at(data.task, canvas, data.plan.goal, "fill='none' stroke='#2ca02c'");
   for (std::size_t p = 0; p < data.chains.size(); ++p) {
     const Chain& chain = data.chains[p];
-    const Pose& from = step == 0 ? chain.start.pose : chain.moves[step - 1].pose;
-    const Pose& to = chain.moves[step].pose;
+    const Pose from = chain.tool(step);
+    const Pose to = chain.tool(step + 1);
     svg += part_at(data.task, canvas, to, "fill='#000' fill-opacity='.05' stroke='#555'");
     svg += canvas.polyline({from.position_m, to.position_m}, 7.0, "stroke='" + colour(p) + "'");
     svg += canvas.dot(from.position_m, 11.0, "fill='#fff' stroke='" + colour(p) + "'");

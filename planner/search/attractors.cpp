@@ -64,6 +64,7 @@ bool pushes_along(const Primitive& primitive, ContactSignature signature) {
 std::optional<Pose> mouth_of_goal(const Task& task, Particle certain, SuccessorEngine& succ) {
   const std::vector<Primitive> pushes = long_primitives(task);
   certain.pose = task.goal;
+  certain.environment = {};
   std::optional<Pose> nearest;
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const auto& pressed : succ.successors(Belief{{certain}}, pushes)) {
@@ -124,8 +125,9 @@ class GuideSearch {
   [[nodiscard]] Belief spread_about(const Pose& place, Rollout& rollout) const {
     Belief belief;
     for (Particle particle : start_.particles) {
-      particle.pose = displaced(place, displacement_between(seed_.mean, particle.pose));
-      if (rollout.in_collision(particle.pose)) return {};
+      const Pose tool = displaced(place, displacement_between(seed_.mean, particle.tool()));
+      if (rollout.in_collision(tool)) return {};
+      particle.pose = seen_as(particle.environment, tool);
       belief.particles.push_back(particle);
     }
     return belief;
@@ -345,7 +347,7 @@ class GuideSearch {
   [[nodiscard]] double share_of(int axis) const {
     double sum = 0.0;
     for (const Particle& particle : start_.particles) {
-      const double off = displacement_between(seed_.mean, particle.pose)[axis];
+      const double off = displacement_between(seed_.mean, particle.tool())[axis];
       sum += off * off;
     }
     return weight_of(axis) * sum / static_cast<double>(start_.particles.size());

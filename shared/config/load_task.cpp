@@ -279,9 +279,10 @@ Task load_task(const std::filesystem::path& name) {
   const auto [file, variant] = config::split_variant(name);
   const std::string text = config::read_file(file);
   const Value document = Value::parse(file, text);
-  const Map map(variant ? config::with_variant(document, *variant) : document,
-                {"name", "coordinates", "held", "environment", "starts", "particle_sigmas", "goal",
-                 "primitives", "speeds", "contact", "compliance", "search", "physics", "variants"});
+  const Map map(
+      variant ? config::with_variant(document, *variant) : document,
+      {"name", "coordinates", "held", "environment", "starts", "error_about_m", "particle_sigmas",
+       "goal", "primitives", "speeds", "contact", "compliance", "search", "physics", "variants"});
   Task task;
   task.name = read_name(map.at("name"), variant);
   task.hash = fnv1a_64(variant ? text + "#" + *variant : text);
@@ -295,6 +296,9 @@ Task load_task(const std::filesystem::path& name) {
   std::set<std::string> start_names;
   for (const Value& start : map.at("starts").list(1, kStartsMax)) {
     task.starts.push_back(read_start(start, task, start_names));
+  }
+  if (const auto about = map.find("error_about_m")) {
+    task.error_about_m = about->vector({-kSizeMax_m, kSizeMax_m});
   }
   map.optional_number("particle_sigmas", positive_to(5.0), task.particle_sigmas);
 

@@ -8,6 +8,7 @@
 
 #include "shared/math/pose.h"
 #include "shared/motion/guarded_move.h"
+#include "shared/task/pose_error.h"
 
 namespace tenon {
 
@@ -21,10 +22,19 @@ struct PhysicalParameters {
 };
 
 /// A particle: a tool at rest. Pose and signature determine its setpoint.
+///
+/// Its frame has the axes that the arm goes by, those of the task frame as it was said to be, in
+/// which moves are made and wrenches felt; its origin goes with the environment's error of
+/// position, since only where the two stand to each other counts. So an environment that is moved
+/// but not turned stands at the identity, whatever its error.
 struct Particle {
-  Pose pose;  ///< tool in the task frame
+  Pose pose;  ///< tool
   ContactSignature signature;
   PhysicalParameters physics;
+  Pose environment;  ///< the task frame as it really stands
+
+  /// The tool in the task frame as it really stands.
+  [[nodiscard]] Pose tool() const { return seen_from(environment, pose); }
 
   friend bool operator==(const Particle&, const Particle&) = default;
 };
@@ -59,7 +69,8 @@ class Rollout {
                                                std::int64_t step_us,
                                                std::vector<TraceSample>* trace = nullptr) = 0;
 
-  /// Whether the held part, as large as it may be, overlaps the environment at this tool pose.
+  /// Whether the held part, as large as it may be, overlaps the environment.
+  /// @param tool_pose in the task frame as it really stands
   [[nodiscard]] virtual bool in_collision(const Pose& tool_pose) = 0;
 
   /// Another instance for another thread.

@@ -48,6 +48,8 @@ struct Task {
   std::vector<Shape> held;
   std::vector<Shape> environment;
   std::vector<Start> starts;
+  /// What an error of the environment's rotation leaves where it is, task frame.
+  Vector3 error_about_m = Vector3::Zero();
   double particle_sigmas = 2.0;  ///< c_p: how many standard deviations out the particles sit
 
   Pose goal;

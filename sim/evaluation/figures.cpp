@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "shared/base/text.h"
+#include "shared/task/pose_error.h"
 #include "sim/evaluation/outline.h"
 #include "sim/evaluation/plot.h"
 
@@ -51,8 +52,9 @@ std::string title_of(const Run& run) {
 }
 
 /// Seen from the environment it is the tool that is off.
-Vector3 began_at(const Candidate& candidate, const Run& run) {
-  return compose(inverse(displaced(Pose{}, run.trial.offset)), candidate.start.pose).position_m;
+Vector3 began_at(const Task& task, const Candidate& candidate, const Run& run) {
+  const Pose environment = environment_pose(run.trial.offset, task.error_about_m);
+  return seen_from(environment, candidate.start.pose).position_m;
 }
 
 std::optional<Point> ended_at(const Task& task, const Run& run, const drawing::View& view) {
@@ -103,7 +105,7 @@ Extent extent_of_runs(const Task& task, const Candidate& candidate, const drawin
   Extent content;
   for (const auto& [number, run] : candidate.runs) {
     if (const auto ended = ended_at(task, run, view)) {
-      content.add(view.mm(began_at(candidate, run)));
+      content.add(view.mm(began_at(task, candidate, run)));
       content.add(*ended);
     }
   }
@@ -205,7 +207,7 @@ std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candid
   for (const auto& [number, run] : candidate.runs) {
     const auto ended = ended_at(task, run, view);
     if (!ended) continue;
-    began.push_back(view.mm(began_at(candidate, run)));
+    began.push_back(view.mm(began_at(evaluation.task, candidate, run)));
     lines[static_cast<std::size_t>(classify(run.result))].emplace_back(began.back(), *ended);
   }
   const double opacity =

@@ -6,6 +6,7 @@
 
 #include "sim/physics/contacts/contact_points.h"
 #include "sim/physics/contacts/prism_contact.h"
+#include "sim/physics/contacts/prism_manifold.h"
 #include "sim/physics/contacts/touching_points.h"
 
 namespace tenon::sim {
@@ -22,7 +23,8 @@ double deepest_m(std::span<const dContactGeom> points) {
 }  // namespace
 
 Scene::Scene(const std::vector<Shape>& held, const std::vector<Shape>& environment,
-             const Pose& X_WT) {
+             const Pose& X_WT)
+    : X_WT_(X_WT) {
   for (const Shape& shape : held) held_.emplace_back(shape);
   for (const Shape& shape : environment) environment_.emplace_back(shape).place(X_WT);
   for (std::size_t h = 0; h < held.size(); ++h) {
@@ -32,6 +34,13 @@ Scene::Scene(const std::vector<Shape>& held, const std::vector<Shape>& environme
 
 void Scene::attach(dBodyID body, const Pose& X_BP) {
   for (ShapeGeometry& shape : held_) shape.attach(body, X_BP);
+}
+
+void Scene::place_environment(const Pose& X_WT) {
+  if (X_WT == X_WT_) return;
+  X_WT_ = X_WT;
+  for (ShapeGeometry& shape : environment_) shape.place(X_WT);
+  moved_anywhere();
 }
 
 void Scene::set_oversize(double oversize_m) {
@@ -79,6 +88,8 @@ void Scene::touch(Watched& watched, bool turns, PairPoints& buffer) {
     watched.apart_until_m = moved_m_ + std::max(0.0, -static_cast<double>(one->depth));
     buffer.front() = *one;
     found = {buffer.data(), one->depth >= 0.0 ? 1U : 0U};
+  } else if (const auto manifold = prism_manifold(held, environment, buffer)) {
+    found = *manifold;
   } else {
     found = touching_points(held, environment, buffer);
   }

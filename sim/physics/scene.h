@@ -33,6 +33,8 @@ class Scene {
   /// Hangs the held shapes on a body. @param X_BP the tool frame in the body's frame
   void attach(dBodyID body, const Pose& X_BP = {});
 
+  /// Where the environment's task frame stands in the world.
+  void place_environment(const Pose& X_WT);
   /// Every size of the held part as drawn and this much more.
   void set_oversize(double oversize_m);
 
@@ -80,6 +82,7 @@ class Scene {
  private:
   std::deque<ShapeGeometry> held_;
   std::deque<ShapeGeometry> environment_;
+  Pose X_WT_;
   struct Watched {
     Pair pair;
     double apart_until_m = 0.0;  ///< on the way that the held part has moved

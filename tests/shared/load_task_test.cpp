@@ -144,7 +144,8 @@ TEST(TaskVariant, RefusesEachBadLineWithItsPlace) {
        "uncertainty_m2, inserted"},
       {"    search: {w1: 3}", "    serach: {w1: 3}", "#fine",
        ":20: variants.fine.serach: is an unknown key, known here: name, coordinates, held, "
-       "environment, starts, particle_sigmas, goal, primitives, speeds, contact, compliance, "
+       "environment, starts, error_about_m, particle_sigmas, goal, primitives, speeds, contact, "
+       "compliance, "
        "search, physics, variants"},
       {"{w1: 3}", "{w1: 3, w1: 4}", "#fine", ":20: variants.fine.search.w1: is given twice"},
       {"sigma_m: [0.001, 0.002]", "sigma_m: [0.001]", "#fine",
@@ -157,7 +158,8 @@ TEST(TaskVariant, RefusesEachBadLineWithItsPlace) {
        ":20: variants.fine.variants: a variant has none itself"},
       {"  fine:\n", "  fine: 3\n  else:\n", "#fine",
        ":17: variants.fine = 3, must be a mapping with the keys name, coordinates, held, "
-       "environment, starts, particle_sigmas, goal, primitives, speeds, contact, compliance, "
+       "environment, starts, error_about_m, particle_sigmas, goal, primitives, speeds, contact, "
+       "compliance, "
        "search, physics, variants"},
       {"  fine:", "  variant_whose_name_is_so_long_that_no_plan_file_could_hold_it:",
        "#variant_whose_name_is_so_long_that_no_plan_file_could_hold_it",

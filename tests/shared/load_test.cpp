@@ -162,7 +162,8 @@ TEST(LoadTask, RefusesEachBadNameAndShapeWithItsPlace) {
        ":4: held[0].cylinder.diameter_m: is given twice"},
       {"name: tiny\n", "name: tiny\ncolour: red\n",
        ":2: colour: is an unknown key, known here: name, coordinates, held, environment, starts, "
-       "particle_sigmas, goal, primitives, speeds, contact, compliance, search, physics, variants"},
+       "error_about_m, particle_sigmas, goal, primitives, speeds, contact, compliance, search, "
+       "physics, variants"},
       {"name: tiny\n", "", ":1: the required key name is missing"},
       {"name: tiny", "name: tin\xC3\xBF",
        ":1: name = tin\xC3\xBF, must be a name of 1 to 63 printable ASCII characters"},

@@ -8,6 +8,7 @@
 #include "shared/base/error.h"
 #include "shared/base/time_units.h"
 #include "shared/task/find_start.h"
+#include "shared/task/pose_error.h"
 #include "sim/cell/devices/drive_402.h"
 #include "sim/cell/devices/force_torque_node.h"
 #include "sim/cell/devices/robot_devices.h"
@@ -63,7 +64,7 @@ ArmBody::Parameters arm_parameters(const Cell& cell, const Cell& real, const Tas
   // The master knows the cell as its file has it, and drives the arm to the start by that.
   parameters.start = options.joints ? *options.joints
                                     : start_joints(cell, start_or_first(task, options.start).pose);
-  parameters.X_BE = compose(real.X_BT, displaced(Pose{}, options.offset));
+  parameters.X_BE = compose(real.X_BT, environment_pose(options.offset, task.error_about_m));
   // The protocol's part is in the drives already.
   const double protocol_s = protocol_lag_s(1e-6 * cell.robot.cycle_us);
   parameters.servo_lag_s = std::max(0.0, cell.robot.response_lag_s - protocol_s);
@@ -272,7 +273,7 @@ Truth VirtualCell::Impl::truth() const {
   truth.world = options_.world;
   truth.world.friction = options_.world.friction.value_or(task_.friction.nominal);
   truth.world.contact_stiffness_Npm = cell_.contact_stiffness_Npm;
-  const Pose X_BE = compose(cell_.X_BT, displaced(Pose{}, options_.offset));
+  const Pose X_BE = compose(cell_.X_BT, environment_pose(options_.offset, task_.error_about_m));
   truth.tool = compose(inverse(X_BE), arm_.tool());
   truth.error = displacement_between(task_.goal, truth.tool);
   truth.error_norm_m = truth.error.head<3>().norm();

@@ -38,6 +38,7 @@ struct OdeRollout::Physics {
     law = {particle.physics.friction, particle.physics.contact_stiffness_Npm};
     tool.set_compliance(move.compliance, turning);
     tool.place(particle.pose);
+    scene.place_environment(particle.environment);
     scene.set_oversize(particle.physics.oversize_m);
     scene.moved_anywhere();
     wrench.setZero();
@@ -148,6 +149,7 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
 
 bool OdeRollout::in_collision(const Pose& tool_pose) {
   physics_->tool.place(tool_pose);
+  physics_->scene.place_environment({});
   physics_->scene.set_oversize(task_.oversize_m);
   return physics_->scene.overlap_m() > kCollision_m;
 }
