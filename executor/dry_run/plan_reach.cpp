@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 namespace tenon::executor {
 namespace {
@@ -15,6 +17,36 @@ void begin_from(std::optional<StepReach>& step, const StepReach::End& end,
     step->begin = end.box;
   }
   step->before.bits |= contacts.bits;
+}
+
+/// A travel along axes that are turned by up to so much (rad, about each), as the task frame has
+/// it.
+ReachBox as_turned(const ReachBox& travel, const Vector3& turned_rad) {
+  ReachBox box = travel;
+  const Vector6 most = travel.low.cwiseAbs().cwiseMax(travel.high.cwiseAbs());
+  for (int about = 0; about < 3; ++about) {
+    const double sine = std::sin(std::min(turned_rad[about], 0.5 * std::numbers::pi));
+    const double shortening = 1.0 - std::cos(turned_rad[about]);
+    for (const int first : {0, 3}) {
+      const int u = first + (about + 1) % 3;
+      const int v = first + (about + 2) % 3;
+      for (const auto& [axis, across] : {std::pair(u, v), std::pair(v, u)}) {
+        const double beside = sine * most[across] + shortening * most[axis];
+        box.low[axis] -= beside;
+        box.high[axis] += beside;
+      }
+    }
+  }
+  return box;
+}
+
+/// How far the axes of a step may be turned, about each axis of the task frame.
+Vector3 turned_rad(const Plan& plan, const Step& step, const ReachBox& begin) {
+  if (!plan.parameter_sets[step.parameter_set].carried_axes) return Vector3::Zero();
+  const Vector3 from_goal = displacement_between(plan.goal, plan.start).tail<3>();
+  return (begin.low.tail<3>() + from_goal)
+      .cwiseAbs()
+      .cwiseMax((begin.high.tail<3>() + from_goal).cwiseAbs());
 }
 
 }  // namespace
@@ -32,9 +64,12 @@ std::vector<std::optional<StepReach>> reach_of(const Plan& plan) {
       if (rule.successor == kSuccessorFail) continue;
       const Envelope& seen = rule.envelope;
       StepReach::End end{rule.successor, {}};
-      end.box = plan.check_envelopes ? here.begin.moved(seen.travelled_min, seen.travelled_max)
-                                     : here.begin.moved(step.displacement.cwiseMin(0.0),
-                                                        step.displacement.cwiseMax(0.0));
+      ReachBox travel{seen.travelled_min, seen.travelled_max};
+      if (!plan.check_envelopes) {
+        travel = {step.displacement.cwiseMin(0.0), step.displacement.cwiseMax(0.0)};
+      }
+      travel = as_turned(travel, turned_rad(plan, step, here.begin));
+      end.box = here.begin.moved(travel.low, travel.high);
       here.swept.include(end.box);
       if (rule.successor < reach.size()) {
         begin_from(reach[rule.successor], end, plan.check_envelopes ? seen.possible : kAllContacts);

@@ -34,9 +34,17 @@ std::vector<Primitive> long_primitives(const Task& task) {
   return both_ways(task, task.long_step_m, 0.0);
 }
 
+Vector6 in_move_axes(const Task& task, const Pose& tool, const Vector6& displacement) {
+  if (!task.motion.carried_axes) return displacement;
+  const Eigen::Quaterniond back = task.goal.orientation * tool.orientation.conjugate();
+  Vector6 own;
+  own << back * displacement.head<3>(), back * displacement.tail<3>();
+  return own;
+}
+
 std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean, const Pose& place,
                                           int label) {
-  Vector6 displacement = displacement_between(mean, place);
+  Vector6 displacement = in_move_axes(task, mean, displacement_between(mean, place));
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(task.coordinates, axis)) displacement[axis] = 0.0;
   }

@@ -23,6 +23,10 @@ inline constexpr int kDirectLabel = 12;
 /// + and - one long step along every translation of the search, for the attractor search.
 [[nodiscard]] std::vector<Primitive> long_primitives(const Task& task);
 
+/// A displacement along the task's axes, in those of a move that begins at a pose
+/// (ParameterSet::carried_axes).
+[[nodiscard]] Vector6 in_move_axes(const Task& task, const Pose& tool, const Vector6& displacement);
+
 /// From the belief's mean straight to a place, in the search's coordinates. A lattice cannot land
 /// on an arbitrary goal; this can. Empty where the place is beyond direct_reach_m, or already met.
 [[nodiscard]] std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean,

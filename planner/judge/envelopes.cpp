@@ -63,8 +63,10 @@ EnvelopeMargins envelope_margins(const Plan& plan, const Task& task) {
   for (const ParameterSet& set : plan.parameter_sets) {
     const double friction_m =
         task.friction.high * set.thresholds.force_keep_N / plan.compliance.stiffness_Npm;
-    const double friction_rad =
-        task.friction.high * set.thresholds.torque_keep_Nm / plan.compliance.stiffness_Nmpr;
+    // No torque is kept where none is sensed.
+    const bool sensed = ((set.sensed_axes & plan.compliance.compliant_axes) >> 3) != 0;
+    const double keep_Nm = sensed ? set.thresholds.torque_keep_Nm : 0.0;
+    const double friction_rad = task.friction.high * keep_Nm / plan.compliance.stiffness_Nmpr;
     margins.position_m = std::max(
         margins.position_m, kSensor_m + set.speeds.contact_mps * plan.latency_max_s + friction_m);
     margins.angle_rad =

@@ -26,7 +26,7 @@ class Suggestions {
 
   /// Along every axis alone to a place's coordinate; and at once along all but one of them.
   void to(const Pose& place, int left_out) {
-    Vector6 way = displacement_between(belief_.mean, place);
+    Vector6 way = in_move_axes(task_, belief_.mean, displacement_between(belief_.mean, place));
     for (int axis = 0; axis < 6; ++axis) {
       if (!has(task_.coordinates, axis)) way[axis] = 0.0;
     }

@@ -24,6 +24,9 @@ using config::Value;
 constexpr std::size_t kShapesMax = 200;
 constexpr std::size_t kStartsMax = 200;
 constexpr double kSizeMax_m = 100.0;
+constexpr std::uint8_t kTranslations = 0b000111;
+constexpr std::uint8_t kRotations = 0b111000;
+constexpr std::uint8_t kAllAxes = kTranslations | kRotations;
 
 std::uint32_t microseconds(double time_s) {
   return static_cast<std::uint32_t>(std::llround(1e6 * time_s));
@@ -186,6 +189,8 @@ void read_contact(const Value& value, Task& task) {
 
   ContactConditions conditions;
   conditions.friction_max = task.friction.high;
+  // A torque that nobody gave a threshold for is not sensed; see read_compliance().
+  task.motion.sensed_axes = map.find("torque_on_Nm") ? kAllAxes : kTranslations;
   if (const auto rule =
           broken_rule(t, task.force_limit_N, task.motion.speeds.acceleration_mps2, conditions)) {
     value.refuse(*rule);
@@ -202,6 +207,9 @@ void read_compliance(const Value& value, Task& task) {
     map.at("axes").refuse("lacks the search coordinate " + std::string(axis_name(axis)) +
                           ": a rigid axis feels no contact");
   }
+  // What does not rotate feels no torque anyway.
+  task.motion.sensed_axes |= static_cast<std::uint8_t>(~c.compliant_axes & kRotations);
+  task.motion.carried_axes = (task.coordinates & kRotations) != 0;
   c.mass_kg = map.number("mass_kg", positive_to(1e3));
   c.damping_Nspm = map.number("damping_Nspm", positive_to(1e6));
   c.stiffness_Npm = map.number("stiffness_Npm", positive_to(1e6));

@@ -15,6 +15,11 @@ constexpr double kRestSpeed_mps = 0.2e-3;
 constexpr double kRestSpeed_radps = 2e-3;
 constexpr std::int64_t kRestWindow_ns = 20'000'000;
 constexpr std::int64_t kSettlingMax_ns = 500'000'000;
+// A tool that is being turned takes longer; who presses it has no end of his own to wait for.
+constexpr std::int64_t kAligningMax_ns = 10'000'000'000;
+// How fast the setpoint follows a tool that something turns.
+constexpr double kCreep_s = 0.05;
+constexpr std::int64_t kCreepIn_ns = 200'000'000;  // until nearly all of the force acts
 constexpr int kSettlingExtraSamples = 2;
 // Blocked: the force limit has been reached and the tool slower than this for that long.
 constexpr double kBlockedSpeed_mps = 1e-3;
@@ -48,7 +53,9 @@ Pose pressed(const Pose& pose, ContactSignature signature, const Compliance& com
 
 GuardedMove::GuardedMove(const MoveParameters& parameters, ContactSignature signature)
     : parameters_(parameters),
-      detector_(parameters.thresholds, parameters.compliance.compliant_axes, signature),
+      rotates_(parameters.compliance.compliant_axes >> 3 != 0),
+      detector_(parameters.thresholds,
+                parameters.compliance.compliant_axes & parameters.sensed_axes, signature),
       initial_(signature),
       displacement_(parameters.displacement),
       free_tool_(parameters.compliance) {
@@ -70,6 +77,34 @@ Pose GuardedMove::rest_setpoint(const Pose& pose, ContactSignature signature,
 }
 
 GuardedMove::Output GuardedMove::update(const Input& input) {
+  if (!parameters_.carried_from) {
+    advance(input);
+    return {setpoint_, phase_};
+  }
+  if (!axes_) axes_ = input.pose.orientation * parameters_.carried_from->conjugate();
+  const bool was_done = result_.has_value();
+  advance(in_own_axes(input));
+  if (result_ && !was_done) result_->pose = input.pose;
+  return {in_task_axes(setpoint_), phase_};
+}
+
+GuardedMove::Input GuardedMove::in_own_axes(const Input& input) const {
+  const Eigen::Quaterniond back = axes_->conjugate();
+  Input own = input;
+  own.pose = compose({Vector3::Zero(), back}, input.pose);
+  own.wrench << back * input.wrench.head<3>(), back * input.wrench.tail<3>();
+  return own;
+}
+
+GuardedMove::Setpoint GuardedMove::in_task_axes(const Setpoint& own) const {
+  Setpoint setpoint;
+  setpoint.pose = compose({Vector3::Zero(), *axes_}, own.pose);
+  setpoint.velocity << *axes_ * own.velocity.head<3>(), *axes_ * own.velocity.tail<3>();
+  setpoint.acceleration << *axes_ * own.acceleration.head<3>(), *axes_ * own.acceleration.tail<3>();
+  return setpoint;
+}
+
+void GuardedMove::advance(const Input& input) {
   if (!started_) start(input);
   remember(input);
   if (input.wrench_fresh) {
@@ -90,7 +125,6 @@ GuardedMove::Output GuardedMove::update(const Input& input) {
     case Phase::kDone:
       break;
   }
-  return {setpoint_, phase_};
 }
 
 void GuardedMove::start(const Input& input) {
@@ -203,9 +237,10 @@ void GuardedMove::resume(const Input& input) {
 void GuardedMove::enter_settling(const Input& input, Outcome outcome) {
   phase_ = Phase::kSettling;
   outcome_ = outcome;
-  settling_since_ns_ = input.time_ns;
+  decided_ns_ = settling_since_ns_ = input.time_ns;
   settling_samples_ = 0;
   pressing_ = detector_.signature();
+  aligning_ = rotates_ && outcome == Outcome::kContact;
   setpoint_.pose = rest_setpoint(input.pose, pressing_, parameters_);
   setpoint_.velocity.setZero();
   setpoint_.acceleration.setZero();
@@ -217,14 +252,26 @@ void GuardedMove::settle(const Input& input) {
     pressing_ = detector_.signature();
     setpoint_.pose = rest_setpoint(input.pose, pressing_, parameters_);
   }
+  if (rotates_ && pressing_.bits != 0) creep(input.pose);
   const std::int64_t since_ns = input.time_ns - settling_since_ns_;
   const bool sampled =
       settling_samples_ > kSettlingExtraSamples &&
       since_ns >= std::max(kRestWindow_ns, std::int64_t{1000} * parameters_.thresholds.debounce_us);
   const bool at_rest = slower_than(kRestSpeed_mps, kRestSpeed_radps);
-  const bool sure = sampled && at_rest && detector_.weak().bits == 0;
-  if (!sure && since_ns < kSettlingMax_ns) return;
+  const bool pressed_long = !aligning_ || since_ns >= kCreepIn_ns;
+  const bool sure = sampled && pressed_long && at_rest && detector_.weak().bits == 0;
+  if (rotates_ && since_ns >= kSettlingMax_ns) detector_.drop_weak();
+  if (!sure && since_ns < (rotates_ ? kAligningMax_ns : kSettlingMax_ns)) return;
+  if (aligning_) {
+    aligning_ = false;
+    settling_since_ns_ = input.time_ns;
+    settling_samples_ = 0;
+    return;
+  }
+  finish(input);
+}
 
+void GuardedMove::finish(const Input& input) {
   phase_ = Phase::kDone;
   detector_.drop_weak();
   setpoint_.pose = rest_setpoint(input.pose, detector_.signature(), parameters_);
@@ -233,10 +280,24 @@ void GuardedMove::settle(const Input& input) {
   result.signature = detector_.signature();
   result.pose = input.pose;
   result.travelled = displacement_between(first_.pose, input.pose);
-  result.decided_ns = settling_since_ns_ - first_.time_ns;
+  result.decided_ns = decided_ns_ - first_.time_ns;
   result.duration_ns = input.time_ns - first_.time_ns;
   result.peak_force_N = peak_force_N_;
   result_ = result;
+}
+
+void GuardedMove::creep(const Pose& pose) {
+  const ContactThresholds& t = parameters_.thresholds;
+  const bool sure = aligning_ && detector_.weak().bits == 0;
+  const double force_N = sure ? kProbeOverOn * t.force_on_N : t.force_keep_N;
+  const Pose follow = pressed(pose, pressing_, parameters_.compliance, force_N, t.torque_keep_Nm);
+  Vector6 way = displacement_between(setpoint_.pose, follow);
+  for (int axis = 0; axis < 6; ++axis) {
+    const bool held = pressing_.sign(axis) != 0;
+    if (!yields(parameters_.compliance, axis) || (axis < 3 && !held)) way[axis] = 0.0;
+  }
+  const double step = step_s();
+  setpoint_.pose = displaced(setpoint_.pose, step / (step + kCreep_s) * way);
 }
 
 Pose GuardedMove::clamped(const Pose& setpoint, const Pose& pose, std::uint8_t& limited) const {

@@ -18,6 +18,10 @@
 // is made, since that may push the tool off them for a while; when it is at rest shows which are
 // left.
 //
+// A tool that can rotate is turned by what it is pressed against. After a contact it presses with
+// the force of a probe until it is at rest, its setpoint creeping after the pose, which is what
+// lets a part align flat; only then it rests with the keep force.
+//
 // The plant between setpoint and pose (an ODE rollout, or an admittance law in front of drives)
 // realises Compliance; the move itself never looks at the spring's own force. It bounds what the
 // plant can pull with, spring and feed-forward together, where something holds the tool back: also
@@ -91,6 +95,10 @@ class GuardedMove {
     Pose pose;
   };
 
+  /// One step in the move's own axes.
+  void advance(const Input& input);
+  [[nodiscard]] Input in_own_axes(const Input& input) const;
+  [[nodiscard]] Setpoint in_task_axes(const Setpoint& own) const;
   void start(const Input& input);
   void plan_path(std::int64_t time_ns, double from);
   void enter_probing(const Input& input);
@@ -101,6 +109,9 @@ class GuardedMove {
   void probe(const Input& input);
   void resume(const Input& input);
   void settle(const Input& input);
+  /// The setpoint of a tool that rotates follows it, pressing on.
+  void creep(const Pose& pose);
+  void finish(const Input& input);
   /// @param limited out: bit a: the spring's pull is at its limit on axis a
   [[nodiscard]] Pose clamped(const Pose& setpoint, const Pose& pose, std::uint8_t& limited) const;
   void watch_resistance(const Vector6& wrench);
@@ -115,6 +126,8 @@ class GuardedMove {
   [[nodiscard]] double step_s() const;
 
   MoveParameters parameters_;
+  std::optional<Eigen::Quaterniond> axes_;  ///< the move's, in the task frame, where they differ
+  bool rotates_ = false;                    ///< something may turn the tool
   ContactDetector detector_;
   ContactSignature initial_;
   /// Bits that the move pushes away from: they neither trigger by going nor by coming back.
@@ -136,8 +149,10 @@ class GuardedMove {
   std::uint8_t resisted_ = 0;  ///< bit a: something pushes back against the command on axis a
   Admittance free_tool_;       ///< while probing: the tool if nothing touches it
   std::int64_t pressed_since_ns_ = -1;
+  std::int64_t decided_ns_ = 0;
   std::int64_t settling_since_ns_ = 0;
   int settling_samples_ = 0;
+  bool aligning_ = false;      ///< not at rest yet under the force of a probe
   ContactSignature pressing_;  ///< the contacts that the settling setpoint presses into
   Outcome outcome_ = Outcome::kTimeout;
   double peak_force_N_ = 0.0;

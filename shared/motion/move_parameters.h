@@ -2,6 +2,7 @@
 // Everything that decides how a guarded move runs and when it ends. The plan file carries these.
 
 #include <cstdint>
+#include <optional>
 
 #include "shared/math/pose.h"
 #include "shared/motion/contact_signature.h"
@@ -56,7 +57,8 @@ struct SpeedLimits {
   friend bool operator==(const SpeedLimits&, const SpeedLimits&) = default;
 };
 
-/// One guarded move. Displacement in the task frame's axes at the tool tip.
+/// One guarded move. Displacement, contacts and travel are in the move's axes at the tool tip:
+/// those of the task frame, or those that have turned with the tool.
 struct MoveParameters {
   Vector6 displacement = Vector6::Zero();
   /// Distance from the start at which the command is down to contact speed, m of translation (rad
@@ -71,6 +73,12 @@ struct MoveParameters {
   std::uint32_t timeout_us = 10'000'000;
   /// Only changes of these bits end the move.
   ContactSignature trigger_mask = kAllContacts;
+  /// Bit a: the contact bits of this axis are decided from the wrench. Along the others something
+  /// may push, below what the sensor resolves; nothing is concluded from it.
+  std::uint8_t sensed_axes = 0x3F;
+  /// Set: the move's axes have turned with the tool as far as it is turned away from this
+  /// orientation as the move begins. A tool that has aligned with a face so moves along that face.
+  std::optional<Eigen::Quaterniond> carried_from;
 };
 
 }  // namespace tenon

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -53,7 +54,7 @@ Compliance read_compliance(FieldReader& in) {
   return c;
 }
 
-ParameterSet read_parameter_set(FieldReader& in, double force_limit_N) {
+ParameterSet read_parameter_set(FieldReader& in, double force_limit_N, std::uint16_t version) {
   ParameterSet set;
   SpeedLimits& v = set.speeds;
   v.approach_mps = in.f32("approach_mps", kSpeed);
@@ -79,6 +80,9 @@ ParameterSet read_parameter_set(FieldReader& in, double force_limit_N) {
   t.debounce_us = in.whole<std::uint32_t>("debounce_us", 0, kDebounceMax_us);
   set.timeout_us = in.whole<std::uint32_t>("timeout_us", 1, kTimeoutMax_us);
   set.trigger_mask = in.signature("trigger_mask");
+  if (version != kVersionOfRotation) return set;
+  set.sensed_axes = in.whole<std::uint8_t>("sensed_axes", 0, 0x3F);
+  set.carried_axes = in.whole<std::uint8_t>("axes", 0, kFlagCarriedAxes) != 0;
   return set;
 }
 
@@ -134,7 +138,8 @@ DecodedPlan check_frame(std::span<const std::uint8_t> bytes) {
     return refused(PlanError::kTooShort, bytes.size(), "header");
   }
   if (load_le<std::uint32_t>(bytes) != kMagic) return refused(PlanError::kMagic, 0, "magic");
-  if (load_le<std::uint16_t>(bytes.subspan(4)) != kVersion) {
+  const auto version = load_le<std::uint16_t>(bytes.subspan(4));
+  if (version != kVersion && version != kVersionOfRotation) {
     return refused(PlanError::kVersion, 4, "version");
   }
   if (load_le<std::uint32_t>(bytes.subspan(8)) != bytes.size()) {
@@ -194,7 +199,7 @@ const char* to_string(PlanError error) {
     case PlanError::kMagic:
       return "not a plan file";
     case PlanError::kVersion:
-      return "another version of the format (this program reads version 1)";
+      return "another version of the format (this program reads versions 1 and 2)";
     case PlanError::kLength:
       return "the length in the header is not the file's: cut off or appended to";
     case PlanError::kChecksum:
@@ -227,14 +232,20 @@ DecodedPlan decode_plan(std::span<const std::uint8_t> bytes) {
   Plan plan;
   const Counts counts = read_header(reader, plan);
   // Nothing is reserved for records that the bytes cannot hold.
+  const auto version = load_le<std::uint16_t>(bytes.subspan(4));
   const std::size_t least =
-      kSetSize * counts.parameter_sets + step_size(plan.coordinates) * counts.steps;
+      set_size(version) * counts.parameter_sets + step_size(plan.coordinates) * counts.steps;
   if (least > reader.remaining()) reader.fail(PlanError::kTruncated, "step_count");
   if (!reader.ok()) return reader.failure();
 
   plan.parameter_sets.reserve(counts.parameter_sets);
   for (std::size_t i = 0; i < counts.parameter_sets && reader.ok(); ++i) {
-    plan.parameter_sets.push_back(read_parameter_set(reader, plan.force_limit_N));
+    plan.parameter_sets.push_back(read_parameter_set(reader, plan.force_limit_N, version));
+  }
+  // A plan has one encoding, the lowest version that holds it.
+  if (reader.ok() && version == kVersionOfRotation &&
+      std::none_of(plan.parameter_sets.begin(), plan.parameter_sets.end(), has_rotation)) {
+    reader.fail(PlanError::kVersion, "version");
   }
   plan.steps.reserve(counts.steps);
   for (std::size_t i = 0; i < counts.steps && reader.ok(); ++i) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -38,9 +39,15 @@ std::uint8_t flags_of(const Plan& plan) {
   return static_cast<std::uint8_t>(method | (plan.check_envelopes ? kFlagCheckEnvelopes : 0U));
 }
 
+/// The lowest that can hold the plan, so that a plan has one encoding.
+std::uint16_t version_of(const Plan& plan) {
+  const auto& sets = plan.parameter_sets;
+  return std::any_of(sets.begin(), sets.end(), has_rotation) ? kVersionOfRotation : kVersion;
+}
+
 void write_header(ByteWriter& out, const Plan& plan, std::size_t length) {
   out.write(kMagic);
-  out.write(kVersion);
+  out.write(version_of(plan));
   out.write(flags_of(plan));
   out.write(plan.coordinates);
   out.write(static_cast<std::uint32_t>(length));
@@ -67,7 +74,7 @@ void write_header(ByteWriter& out, const Plan& plan, std::size_t length) {
   out.write(static_cast<std::uint8_t>(plan.steps.size()));
 }
 
-void write_parameter_set(ByteWriter& out, const ParameterSet& set) {
+void write_parameter_set(ByteWriter& out, const ParameterSet& set, std::uint16_t version) {
   const SpeedLimits& v = set.speeds;
   const ContactThresholds& t = set.thresholds;
   for (const double value :
@@ -79,6 +86,9 @@ void write_parameter_set(ByteWriter& out, const ParameterSet& set) {
   out.write(t.debounce_us);
   out.write(set.timeout_us);
   out.write(set.trigger_mask.bits);
+  if (version != kVersionOfRotation) return;
+  out.write(set.sensed_axes);
+  out.write(static_cast<std::uint8_t>(set.carried_axes ? kFlagCarriedAxes : 0));
 }
 
 void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates) {
@@ -108,7 +118,7 @@ void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates) {
 
 std::size_t encoded_size(const Plan& plan) {
   std::size_t size = kHeaderSize + plan.task_name.size() + plan.start_name.size() +
-                     kSetSize * plan.parameter_sets.size() + kChecksumSize;
+                     set_size(version_of(plan)) * plan.parameter_sets.size() + kChecksumSize;
   for (const Step& step : plan.steps) {
     size += step_size(plan.coordinates);
     for (const OutcomeRule& rule : step.outcomes) {
@@ -155,7 +165,8 @@ std::vector<std::uint8_t> encode_plan(const Plan& plan) {
   std::vector<std::uint8_t> bytes(encoded_size(plan));
   ByteWriter out(bytes);
   write_header(out, plan, bytes.size());
-  for (const ParameterSet& set : plan.parameter_sets) write_parameter_set(out, set);
+  const std::uint16_t version = version_of(plan);
+  for (const ParameterSet& set : plan.parameter_sets) write_parameter_set(out, set, version);
   for (const Step& step : plan.steps) write_step(out, step, plan.coordinates);
   out.write(crc32c(std::span<const std::uint8_t>(bytes).first(out.offset())));
   assert(out.ok() && out.remaining() == 0);

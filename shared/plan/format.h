@@ -11,12 +11,19 @@ namespace tenon::plan_format {
 
 inline constexpr std::uint32_t kMagic = 0x1A504E54;  // "TNP" and an end-of-file character
 inline constexpr std::uint16_t kVersion = 1;
+inline constexpr std::uint16_t kVersionOfRotation = 2;  // sets say which axes, and whose
+inline constexpr std::uint8_t kFlagCarriedAxes = 0x01;
 inline constexpr std::uint8_t kFlagCheckEnvelopes = 0x01;
 inline constexpr unsigned kMethodShift = 1;  // of the flags' bits that hold the method
 inline constexpr std::uint8_t kFlagsMax =
     static_cast<std::uint8_t>(kPlanMethods.back()) << kMethodShift | kFlagCheckEnvelopes;
 inline constexpr std::size_t kHeaderSize = 205;  // without the two names' text
-inline constexpr std::size_t kSetSize = 66;
+inline std::size_t set_size(std::uint16_t version) {
+  return version == kVersionOfRotation ? 68 : 66;
+}
+inline bool has_rotation(const ParameterSet& set) {
+  return set.sensed_axes != 0x3F || set.carried_axes;
+}
 inline constexpr std::size_t kChecksumSize = 4;
 inline constexpr std::size_t kNameMax = 63;
 inline constexpr std::size_t kParameterSetsMax = 200;

@@ -27,6 +27,8 @@ MoveParameters move_parameters(const Plan& plan, std::size_t step) {
   move.torque_limit_Nm = plan.torque_limit_Nm;
   move.timeout_us = set.timeout_us;
   move.trigger_mask = set.trigger_mask;
+  move.sensed_axes = set.sensed_axes;
+  if (set.carried_axes) move.carried_from = plan.goal.orientation;
   return move;
 }
 

@@ -57,6 +57,9 @@ struct ParameterSet {
   ContactThresholds thresholds;
   std::uint32_t timeout_us = 10'000'000;
   ContactSignature trigger_mask = kAllContacts;
+  std::uint8_t sensed_axes = 0x3F;  ///< see MoveParameters
+  /// The steps' axes turn with the tool, and are the task frame's at the goal's orientation.
+  bool carried_axes = false;
 
   friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// A task's own predicate of success.
+// What a task calls success.
 
 #include "shared/math/pose.h"
 #include "shared/task/task.h"
@@ -8,5 +8,9 @@ namespace tenon {
 
 /// Whether a tool tip stands where the task wants it inserted; always where it does not say.
 [[nodiscard]] bool inserted(const Task& task, const Pose& tool);
+
+/// Whether a tool stands within goal_tolerance_m of the goal: its distance, and what it is turned
+/// by along the task's coordinates times orientation_weight.
+[[nodiscard]] bool within_tolerance(const Task& task, const Pose& tool);
 
 }  // namespace tenon

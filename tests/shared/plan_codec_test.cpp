@@ -93,6 +93,42 @@ TEST(PlanCodec, EveryMethodComesBackBesideTheFlagForEnvelopes) {
   }
 }
 
+TEST(PlanCodec, WhatASetSaysOfItsAxesMakesItVersionTwoAndComesBack) {
+  Plan plan = long_plan(0b100011, 3, {Outcome::kReached});
+  EXPECT_EQ(encode_plan(plan)[4], 1);
+  plan.parameter_sets[1].sensed_axes = 0b011111;
+  plan.parameter_sets[1].carried_axes = true;
+  const Bytes bytes = encode_plan(plan);
+  EXPECT_EQ(bytes[4], 2);
+  const Plan back = decoded(bytes);
+  EXPECT_EQ(back.parameter_sets[0].sensed_axes, 0x3F);
+  EXPECT_FALSE(back.parameter_sets[0].carried_axes);
+  EXPECT_EQ(back.parameter_sets[1].sensed_axes, 0b011111);
+  EXPECT_TRUE(back.parameter_sets[1].carried_axes);
+  EXPECT_FALSE(move_parameters(back, 0).carried_from.has_value());
+  EXPECT_EQ(encode_plan(back), bytes);
+}
+
+// What version 1 can hold has no other encoding.
+TEST(PlanCodec, AVersionTwoThatSaysNothingNewIsRefused) {
+  Plan plan = documented_plan();
+  plan.parameter_sets[0].carried_axes = true;
+  Bytes bytes = encode_plan(plan);
+  const std::size_t flags = 0xDD + 66 + 1;
+  ASSERT_EQ(bytes[flags], 1);
+  bytes[flags] = 0;
+  reseal(bytes);
+  EXPECT_EQ(decode_plan(bytes).error, PlanError::kVersion);
+  bytes[flags] = 2;
+  reseal(bytes);
+  EXPECT_EQ(decode_plan(bytes).error, PlanError::kRange);
+  EXPECT_EQ(decode_plan(bytes).field, "axes");
+  bytes[flags] = 1;
+  bytes[flags - 1] = 0x40;
+  reseal(bytes);
+  EXPECT_EQ(decode_plan(bytes).field, "sensed_axes");
+}
+
 TEST(PlanCodec, AnEnvelopeOnlyGrows) {
   const Plan plan = long_plan(0b111111, 15, {Outcome::kContact});
   const Plan back = decoded(encode_plan(plan));

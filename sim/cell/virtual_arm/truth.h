@@ -37,7 +37,7 @@ struct Truth {
   double error_norm_m = 0.0;
   double error_norm_rad = 0.0;
   double goal_tolerance_m = 0.0;
-  bool within_tolerance = false;     ///< error_norm_m alone
+  bool within_tolerance = false;     ///< see shared/task/inserted.h
   double contact_force_N_max = 0.0;  ///< of the environment on the part, instantaneous
   std::vector<std::string> touching;
   std::vector<DriveTruth> drives;

@@ -8,6 +8,7 @@
 #include "shared/base/error.h"
 #include "shared/base/time_units.h"
 #include "shared/task/find_start.h"
+#include "shared/task/inserted.h"
 #include "shared/task/pose_error.h"
 #include "sim/cell/devices/drive_402.h"
 #include "sim/cell/devices/force_torque_node.h"
@@ -279,7 +280,7 @@ Truth VirtualCell::Impl::truth() const {
   truth.error_norm_m = truth.error.head<3>().norm();
   truth.error_norm_rad = truth.error.tail<3>().norm();
   truth.goal_tolerance_m = task_.goal_tolerance_m;
-  truth.within_tolerance = truth.error_norm_m <= task_.goal_tolerance_m;
+  truth.within_tolerance = within_tolerance(task_, truth.tool);
   truth.contact_force_N_max = watch_.contact_force_N_max();
   truth.touching = arm_.scene().touching();
   for (std::size_t i = 0; i < drives_.size(); ++i) {

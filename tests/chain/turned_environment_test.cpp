@@ -1,0 +1,80 @@
+// A tray that lies askew, over the whole chain: an arm with six axes presses the box flat, follows
+// the tray's own directions, and stands in it as the task wants.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <numbers>
+
+#include "executor/dry_run/dry_run.h"
+#include "executor/dry_run/plan_check.h"
+#include "planner/cell_fit.h"
+#include "shared/config/load.h"
+#include "sim/cell/virtual_arm/environment_offset.h"
+#include "tests/support/places.h"
+#include "tests/support/planned.h"
+#include "tests/support/whole_run.h"
+
+namespace tenon::tests {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+class TurnedEnvironment : public ::testing::Test {
+ protected:
+  TurnedEnvironment() { options_.start = task_.starts.front().name; }
+
+  WholeRun::Result run(const Vector6& offset) {
+    options_.offset = offset;
+    return WholeRun(cell_, task_, plan_, options_).run();
+  }
+
+  Cell cell_ = shipped_cell("csp6");
+  Task task_ =
+      planner::fit_to_cell(load_task(in_tree("planner/tasks/box_on_table_se2.yaml")), cell_).task;
+  Plan plan_ = load_plan(shared_plan("box_se2_csp6"));
+  WholeRun::Options options_;
+};
+
+TEST_F(TurnedEnvironment, TheArmTakesThePlan) {
+  EXPECT_TRUE(executor::check_plan(plan_, cell_).empty());
+  for (const std::string& refusal : executor::dry_run(plan_, cell_).refusals) {
+    ADD_FAILURE() << refusal;
+  }
+}
+
+TEST_F(TurnedEnvironment, TheBoxEndsAtItsPlaceAndAsTheTrayLies) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Vector6 offset = sim::draw_offset(task_.starts.front(), task_.coordinates, seed);
+    const WholeRun::Result result = run(offset);
+    std::printf(
+        "tray off by x %.1f y %.1f mm, rz %.2f deg: %s, %.2f mm and %.3f deg from the goal\n",
+        1e3 * offset[0], 1e3 * offset[1], offset[5] / kDegree, result.reason.c_str(),
+        1e3 * result.truth.error_norm_m, result.truth.error_norm_rad / kDegree);
+    EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanDone) << result.reason;
+    EXPECT_TRUE(result.truth.within_tolerance);
+    EXPECT_LT(result.truth.error_norm_rad, 0.2 * kDegree);
+  }
+}
+
+// Five degrees either way at once with the tray's worst place.
+TEST_F(TurnedEnvironment, AtTheRimOfItsReachToo) {
+  for (const double turned_rad : {-0.087, 0.087}) {
+    Vector6 offset = Vector6::Zero();
+    offset << 0.02, -0.02, 0.0, 0.0, 0.0, turned_rad;
+    const WholeRun::Result result = run(offset);
+    EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanDone) << result.reason;
+    EXPECT_LT(result.truth.error_norm_rad, 0.2 * kDegree);
+  }
+}
+
+// The same plan with its axes left to the task frame: the box goes beside its place.
+TEST_F(TurnedEnvironment, WithoutTheAxesThatItCarriesTheBoxMissesItsPlace) {
+  plan_.parameter_sets.front().carried_axes = false;
+  Vector6 offset = Vector6::Zero();
+  offset[5] = 0.08;
+  EXPECT_FALSE(run(offset).truth.within_tolerance);
+}
+
+}  // namespace
+}  // namespace tenon::tests

@@ -1,0 +1,127 @@
+// A tool that can turn, pressed against something that is not where its axes say: it aligns, and
+// goes on along what it found.
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <numbers>
+
+#include "shared/ports/rollout.h"
+#include "shared/task/task.h"
+#include "sim/physics/rollout/ode_rollout.h"
+
+namespace tenon {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::int64_t kStep_us = 2000;
+
+/// A box of 0.1 m before a wall at +x that is turned about z; only x, y and the turn yield.
+class Wall {
+ public:
+  Wall() {
+    task_.held = {{"part", Shape::Kind::kBox, {0.1, 0.1, 0.1}, {}}};
+    task_.environment = {
+        {"wall", Shape::Kind::kBox, {0.1, 2.0, 0.1}, {{0.2, 0.0, 0.01}, {1, 0, 0, 0}}}};
+    move_.compliance.compliant_axes = 0b100011;
+    move_.compliance.stiffness_Nmpr = 5.0;
+    move_.sensed_axes = 0b011111;
+    move_.timeout_us = 20'000'000;
+    move_.displacement[0] = 0.2;
+  }
+
+  [[nodiscard]] Particle before(double turned_rad, double friction) const {
+    Particle particle;
+    particle.environment = {Vector3::Zero(), rotation_of({0.0, 0.0, turned_rad})};
+    particle.physics.friction = friction;
+    return particle;
+  }
+  [[nodiscard]] RolloutResult run(const Particle& particle, const MoveParameters& move,
+                                  std::vector<TraceSample>* trace = nullptr) {
+    return sim::OdeRollout(task_).simulate(particle, move, kStep_us, trace);
+  }
+  [[nodiscard]] const MoveParameters& push() const { return move_; }
+
+ private:
+  Task task_;
+  MoveParameters move_;
+};
+
+double turn_of(const Pose& pose) { return rotation_vector(pose.orientation).z(); }
+
+TEST(Aligning, APartThatMeetsAWallAskewEndsFlatAgainstIt) {
+  for (const double turned_deg : {-8.0, -5.0, -1.0, -0.1, 0.0, 0.3, 2.0, 5.0, 8.0}) {
+    for (const double friction : {0.1, 0.3, 0.6}) {
+      Wall wall;
+      const RolloutResult result =
+          wall.run(wall.before(turned_deg * kDegree, friction), wall.push());
+      ASSERT_TRUE(result.valid) << result.failure;
+      EXPECT_EQ(result.move.outcome, Outcome::kContact);
+      EXPECT_EQ(to_string(result.move.signature), "-x");
+      EXPECT_NEAR(turn_of(result.move.pose), turned_deg * kDegree, 0.05 * kDegree)
+          << turned_deg << " degrees, friction " << friction;
+      EXPECT_LT(result.move.peak_force_N, 20.0);
+    }
+  }
+}
+
+// Without rotary compliance nothing of this happens.
+TEST(Aligning, ATouchThatCannotTurnLeavesThePartAskew) {
+  Wall wall;
+  MoveParameters rigid = wall.push();
+  rigid.compliance.compliant_axes = 0b000011;
+  const RolloutResult result = wall.run(wall.before(5.0 * kDegree, 0.3), rigid);
+  ASSERT_TRUE(result.valid) << result.failure;
+  EXPECT_EQ(turn_of(result.move.pose), 0.0);
+}
+
+TEST(Aligning, AMoveInCarriedAxesGoesAlongWhatTheToolHasFound) {
+  Wall wall;
+  const double turned_rad = 5.0 * kDegree;
+  Particle particle = wall.before(turned_rad, 0.3);
+  MoveParameters push = wall.push();
+  push.carried_from = Eigen::Quaterniond::Identity();
+  const RolloutResult met = wall.run(particle, push);
+  ASSERT_TRUE(met.valid) << met.failure;
+
+  particle.pose = met.move.pose;
+  particle.signature = met.move.signature;
+  MoveParameters along = push;
+  along.displacement << 0.0, 0.2, 0.0, 0.0, 0.0, 0.0;
+  const RolloutResult slid = wall.run(particle, along);
+  ASSERT_TRUE(slid.valid) << slid.failure;
+  EXPECT_EQ(slid.move.outcome, Outcome::kReached);
+  EXPECT_EQ(to_string(slid.move.signature), "-x");
+  EXPECT_NEAR(slid.move.travelled[1], 0.2, 1e-3);  // in its own axes
+  EXPECT_NEAR(slid.move.travelled[0], 0.0, 0.1e-3);
+  const Vector3 way_m = slid.move.pose.position_m - met.move.pose.position_m;
+  EXPECT_NEAR(std::atan2(-way_m.x(), way_m.y()), turned_rad, 0.05 * kDegree);
+
+  // By the task's axes the wall comes nearer, or leaves: 17 mm over this way.
+  along.carried_from.reset();
+  const RolloutResult askew = wall.run(particle, along);
+  ASSERT_TRUE(askew.valid) << askew.failure;
+  const Vector3 other_m = askew.move.pose.position_m - met.move.pose.position_m;
+  EXPECT_GT((other_m - way_m).norm(), 1e-3);
+}
+
+TEST(Aligning, ARecordedMoveInCarriedAxesReplaysBitForBit) {
+  Wall wall;
+  MoveParameters push = wall.push();
+  push.carried_from = rotation_of({0.0, 0.0, -0.2});
+  push.displacement << 0.2, 0.01, 0.0, 0.0, 0.0, 0.05;
+  std::vector<TraceSample> trace;
+  const RolloutResult result = wall.run(wall.before(4.0 * kDegree, 0.3), push, &trace);
+  ASSERT_TRUE(result.valid) << result.failure;
+  GuardedMove again(push, {});
+  for (const TraceSample& sample : trace) {
+    const GuardedMove::Output output = again.update(sample.input);
+    ASSERT_EQ(std::memcmp(&output.setpoint, &sample.setpoint, sizeof output.setpoint), 0);
+  }
+  ASSERT_TRUE(again.result().has_value());
+  EXPECT_EQ(again.result()->outcome, result.move.outcome);
+  EXPECT_EQ(again.result()->duration_ns, result.move.duration_ns);
+}
+
+}  // namespace
+}  // namespace tenon
