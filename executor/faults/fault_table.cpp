@@ -88,8 +88,8 @@ constexpr std::array kTable = {
     ended(EndReason::kPlanFailed, "plan_failed", "plan runner: outcome and envelope of a step"),
     ended(EndReason::kStopRequested, "stop_requested", "signal", EndManner::kToolRamp),
     ended(EndReason::kNotAtStart, "not_at_start", "tool's pose after the tare"),
-    fault(EndReason::kTareUnsteady, "tare_unsteady", "tare: deviation of its samples",
-          {.cycles = kTareSamples + 2}, "the tare's first sample", EndManner::kHold),
+    fault(EndReason::kTareUnsteady, "tare_unsteady", "tare: deviation of its samples, five times",
+          {.cycles = kTareTries * kTareSamples + 2}, "the tare's first sample", EndManner::kHold),
     fault(EndReason::kTareMoving, "tare_moving", "tare: way of every joint", kAtOnce,
           "the way that is too far", EndManner::kHold),
     fault(EndReason::kContactOnApproach, "contact_on_approach",
@@ -165,7 +165,7 @@ constexpr std::array kTable = {
           {.cycles = kBlindCyclesMin + 2, .time_s = kBlindMax_s}),
     fault(EndReason::kTareOffset, "tare_offset",
           "mean of the tare against the cell's sensor_bias and payload",
-          {.cycles = kTareSamples + 2}, "the tare's first sample", EndManner::kHold),
+          {.cycles = kTareTries * kTareSamples + 2}, "the tare's first sample", EndManner::kHold),
     ended(EndReason::kNotAtGoal, "not_at_goal", "tool's pose at the plan's end against its goal"),
 };
 

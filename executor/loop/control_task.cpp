@@ -214,7 +214,10 @@ ControlTask::Turn ControlTask::tare(const ArmFeedback& feedback) {
       if (const auto pushed = supervision_.tare(sensor_tare_.mean())) return *pushed;
       return Event::kTared;
     case SensorTare::Status::kUnsteady:
-      return unsteady(sensor_tare_);
+      // An arm that has just taken its load off the brakes swings for a while.
+      if (++unsteady_tares_ >= kTareTries) return unsteady(sensor_tare_);
+      sensor_tare_.start_again();
+      return {};
   }
   return {};
 }

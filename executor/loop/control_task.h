@@ -142,6 +142,7 @@ class ControlTask {
   ToolKinematics kinematics_;
   Supervision supervision_;
   SensorTare sensor_tare_;
+  int unsteady_tares_ = 0;
   JointCommand joints_;
 
   State state_ = State::kWaiting;

@@ -51,6 +51,9 @@ class SensorTare {
     return status_;
   }
 
+  /// Forgets all samples.
+  void start_again() { *this = SensorTare(parameters_); }
+
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] const Vector6& mean() const { return mean_; }
   /// Axis 0..5 whose standard deviation is largest against its bound.

@@ -272,6 +272,18 @@ TEST(Controller, ANoisySensorIsNotTared) {
   EXPECT_NEAR(bench.controller.ending().bound, 0.3, 1e-12);
 }
 
+// An arm that has just taken its load off the brakes swings for a while.
+TEST(Controller, ASensorThatComesToRestIsTared) {
+  Bench bench(touch_and_slide_plan());
+  bench.arm.walls.push_back({0, +1, 0.13});
+  bench.arm.noise_N = 2.0;
+  int cycles = 0;
+  bench.run([&] {
+    if (++cycles == 500) bench.arm.noise_N = 0.0;
+  });
+  EXPECT_EQ(bench.controller.ending().reason, EndReason::kPlanDone) << bench.ending();
+}
+
 // The sensor reads steadily; only what the cell knows of it tells that something pushes.
 TEST(Controller, TaringAgainstSomethingThatPushesIsRefusedWhereTheCellKnowsTheBias) {
   Cell cell = hand_made_cell();
