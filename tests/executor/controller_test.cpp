@@ -272,7 +272,6 @@ TEST(Controller, ANoisySensorIsNotTared) {
   EXPECT_NEAR(bench.controller.ending().bound, 0.3, 1e-12);
 }
 
-// An arm that has just taken its load off the brakes swings for a while.
 TEST(Controller, ASensorThatComesToRestIsTared) {
   Bench bench(touch_and_slide_plan());
   bench.arm.walls.push_back({0, +1, 0.13});

@@ -7,6 +7,7 @@
 
 #include "shared/config/load.h"
 #include "shared/task/inserted.h"
+#include "tests/shared/slide_robot.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
@@ -15,23 +16,28 @@ namespace {
 
 using tests::ScratchFolder;
 
-std::string with(const std::string& coordinates, const std::string& axes,
-                 const std::string& contact = "", const std::string& more = "") {
-  return "name: turning\ncoordinates: [" + coordinates + R"(]
+constexpr const char* kTask = R"(name: turning
+coordinates: [COORDINATES]
 held:
   - {name: part, box_m: [0.1, 0.1, 0.1], pose: {position_m: [0, 0, 0.05]}}
 environment:
   - {name: wall, box_m: [0.1, 1.0, 0.1], pose: {position_m: [0.5, 0, 0.05]}}
 starts:
-  - {name: "1", pose: {position_m: [0, 0, 0]}, sigma_m: [0.01, 0.01])" +
-         (coordinates.find("rz") == std::string::npos ? "}" : ", sigma_rad: [0.03]}") + R"(
+  - {name: "1", pose: {position_m: [0, 0, 0]}, sigma_m: [0.01, 0.01]SIGMA}
 goal: {pose: {position_m: [0.2, 0, 0]}, tolerance_m: 2e-3}
 speeds: {approach_mps: 0.10, contact_mps: 0.05}
-contact: {force_on_N: 6, force_keep_N: 3, force_off_N: 1.5, debounce_s: 0.006, force_limit_N: 20)" +
-         contact + "}\ncompliance: {axes: [" + axes +
-         R"(], mass_kg: 2, damping_Nspm: 1500, stiffness_Npm: 1000}
+contact: {force_on_N: 6, force_keep_N: 3, force_off_N: 1.5, debounce_s: 0.006, force_limit_N: 20MORE}
+compliance: {axes: [AXES], mass_kg: 2, damping_Nspm: 1500, stiffness_Npm: 1000}
 physics: {friction: {low: 0.1, nominal: 0.3, high: 0.6}, contact_stiffness_Npm: 5e4}
-)" + more;
+)";
+
+std::string with(const std::string& coordinates, const std::string& axes,
+                 const std::string& contact = "", const std::string& more = "") {
+  const bool turns = coordinates.find("rz") != std::string::npos;
+  std::string text = tests::replaced(kTask, "COORDINATES", coordinates);
+  text = tests::replaced(text, "SIGMA", turns ? ", sigma_rad: [0.03]" : "");
+  text = tests::replaced(text, "MORE", contact);
+  return tests::replaced(text, "AXES", axes) + more;
 }
 
 Task loaded(const std::string& text) {
