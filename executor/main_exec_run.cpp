@@ -9,6 +9,7 @@
 #include "executor/main_exec_output.h"
 #include "hw/arm/canopen_arm.h"
 #include "hw/arm/describe_fault.h"
+#include "hw/arm/drive_settings.h"
 #include "hw/arm/frame_set.h"
 #include "hw/can/candump_log.h"
 #include "hw/can/open_bus.h"
@@ -97,6 +98,9 @@ TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* st
 TaskRun::~TaskRun() = default;
 
 void TaskRun::run() {
+  for (const std::string& remark : hw::drive_remarks(robot())) {
+    std::fprintf(stderr, "tenon-exec: %s\n", remark.c_str());
+  }
   recorder_->start();
   std::exception_ptr failure;
   std::thread real_time([&] {
@@ -122,6 +126,9 @@ void TaskRun::run_arm() {
     if (arm_->state() == ArmState::kFault) throw InputError(hw::describe(arm_->fault(), robot()));
     arm_->wait(kPoll_ns);
     now_ns = monotonic_now_ns();
+  }
+  for (const hw::SettingNote& note : arm_->bring_up().notes()) {
+    std::fprintf(stderr, "tenon-exec: %s\n", hw::describe(note, robot()).c_str());
   }
   runner_.run(stop_);
 }

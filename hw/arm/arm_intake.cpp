@@ -1,5 +1,6 @@
 #include "hw/arm/arm_intake.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -23,7 +24,11 @@ ArmIntake::ArmIntake(const Robot& robot, std::span<JointChannel> joints,
       sensor_(robot.sensor),
       other_master_(robot),
       supervision_(supervision),
-      counters_(counters) {}
+      counters_(counters) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    feedback_ids_[i] = joint_feedback_cob_id(robot, i);
+  }
+}
 
 void ArmIntake::reset() noexcept {
   for (JointChannel& joint : joints_) {
@@ -95,12 +100,15 @@ bool ArmIntake::take_process_data(const CanFrame& frame) noexcept {
     take_wrench_half(force ? WrenchPairing::Half::kForce : WrenchPairing::Half::kTorque, frame);
     return true;
   }
-  if (frame.id < kJointFeedbackCobId || frame.id >= joint_feedback_cob_id(joints_.size())) {
+  const auto ids = std::span(feedback_ids_).first(joints_.size());
+  const auto found = std::find(ids.begin(), ids.end(), frame.id);
+  if (found == ids.end()) {
     return false;
   }
-  const std::size_t i = frame.id - kJointFeedbackCobId;
+  const auto i = static_cast<std::size_t>(found - ids.begin());
   if (!joints_[i].take_feedback(frame)) {
     ++counters_.malformed_frames;
+    supervision_.take_wrong_length(joints_[i].node(), frame.length);
     return true;
   }
   counters_.late_frames += cycle_open_ ? 0 : 1;
@@ -114,6 +122,7 @@ bool ArmIntake::take_process_data(const CanFrame& frame) noexcept {
 void ArmIntake::take_wrench_half(WrenchPairing::Half half, const CanFrame& frame) noexcept {
   if (frame.length != 8) {
     ++counters_.malformed_frames;
+    supervision_.take_wrong_length(sensor_.node, frame.length);
     return;
   }
   counters_.late_frames += cycle_open_ ? 0 : 1;

@@ -9,6 +9,7 @@
 //
 // Real-time, no clock; one thread. Joints, supervision and counters outlive it.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -53,6 +54,7 @@ class ArmIntake {
   void take_wrench(const WrenchPairing::Sample& sample) noexcept;
 
   const std::span<JointChannel> joints_;
+  std::array<std::uint32_t, kMaxJoints> feedback_ids_{};
   const ForceTorqueSensor sensor_;
   const OtherMaster other_master_;
   ArmSupervision& supervision_;

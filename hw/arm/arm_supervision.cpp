@@ -13,11 +13,18 @@ namespace {
 using canopen::object_of;
 using cia402::DriveState;
 
+std::vector<DriveProfile> drives_of(const Robot& robot) {
+  std::vector<DriveProfile> drives;
+  for (const Joint& joint : robot.joints) drives.push_back(joint.drive);
+  return drives;
+}
+
 }  // namespace
 
 ArmSupervision::ArmSupervision(const Robot& robot, std::span<const JointChannel> joints,
                                ArmCounters& counters)
     : joints_(joints),
+      drives_(drives_of(robot)),
       sensor_node_(robot.sensor.node),
       heartbeat_timeout_ns_(robot.heartbeat_timeout_ms * kNanosecondsPerMillisecond),
       counters_(counters) {
@@ -35,6 +42,8 @@ void ArmSupervision::reset() noexcept {
 void ArmSupervision::begin(std::int64_t now_ns) noexcept {
   watch_.restart(now_ns);
   missing_cycles_.fill(0);
+  warned_.fill(0);
+  wrong_length_.fill(0);
   stale_cycles_ = silent_cycles_ = refused_cycles_ = 0;
   refused_ = false;
   enter_state(ArmState::kDisabled, now_ns);
@@ -54,8 +63,12 @@ void ArmSupervision::raise(const ArmFault& fault) noexcept {
   }
 }
 
-void ArmSupervision::raise_of_drive(ArmFaultKind kind, const JointChannel& joint) noexcept {
-  raise({kind, joint.node(), object_of(tenon::canopen::kStatusword), joint.statusword()});
+void ArmSupervision::raise_of_drive(ArmFaultKind kind, std::size_t joint) noexcept {
+  const JointChannel& channel = joints_[joint];
+  if (kind == ArmFaultKind::kDriveFault && warned_[joint] != 0) {
+    return raise({kind, channel.node(), object_of(tenon::canopen::kErrorCode), warned_[joint]});
+  }
+  raise({kind, channel.node(), object_of(tenon::canopen::kStatusword), channel.statusword()});
 }
 
 // --- told as it happens --------------------------------------------------------------------------
@@ -93,12 +106,13 @@ void ArmSupervision::take_emergency(const canopen::Emergency& emergency) noexcep
     raise({ArmFaultKind::kSensorInvalid, sensor_node_, error_code, emergency.code});
     return;
   }
-  const bool ours = std::any_of(joints_.begin(), joints_.end(), [&](const JointChannel& joint) {
+  const auto ours = std::find_if(joints_.begin(), joints_.end(), [&](const JointChannel& joint) {
     return joint.node() == emergency.node;
   });
-  if (!ours) {
+  if (ours == joints_.end()) {
     return;
   }
+  const auto joint = static_cast<std::size_t>(ours - joints_.begin());
   // The statusword may have told first; the error code says more.
   const bool same_fault = fault_.kind == ArmFaultKind::kDriveFault &&
                           fault_.node == emergency.node &&
@@ -106,10 +120,18 @@ void ArmSupervision::take_emergency(const canopen::Emergency& emergency) noexcep
   if (same_fault) {
     fault_.object = error_code;
     fault_.code = emergency.code;
+  } else if (drives_[joint].warns(emergency.code)) {
+    warned_[joint] = emergency.code;
   } else if (state_ != ArmState::kDisabled) {
     // Drives that are off keep their fault until enabling resets it.
     raise({ArmFaultKind::kDriveFault, emergency.node, error_code, emergency.code});
   }
+}
+
+void ArmSupervision::take_wrong_length(std::uint8_t node, std::uint8_t data_bytes) noexcept {
+  std::size_t at = 0;
+  while (at < joints_.size() && joints_[at].node() != node) ++at;
+  wrong_length_[at] = static_cast<std::uint8_t>(data_bytes + 1);
 }
 
 // --- once a cycle --------------------------------------------------------------------------------
@@ -137,25 +159,33 @@ void ArmSupervision::check_sending() noexcept {
   }
 }
 
+void ArmSupervision::raise_missing(ArmFaultKind kind, std::uint8_t node, std::uint32_t cycles,
+                                   std::uint8_t wrong_length) noexcept {
+  if (wrong_length == 0) return raise({kind, node, 0, cycles});
+  raise({kind, node, object_of(tenon::canopen::kTpdoMapping), wrong_length - 1u});
+}
+
 void ArmSupervision::check_feedback(const ArmFeedback& feedback) noexcept {
   check_silence(feedback);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     if ((feedback.joints_fresh >> i & 1u) != 0) {
-      missing_cycles_[i] = 0;
+      missing_cycles_[i] = wrong_length_[i] = 0;
       continue;
     }
     ++counters_.joint_frames_missing;
     if (++missing_cycles_[i] > kMissingCycles) {
-      raise({ArmFaultKind::kFeedbackMissing, joints_[i].node(), 0, missing_cycles_[i]});
+      raise_missing(ArmFaultKind::kFeedbackMissing, joints_[i].node(), missing_cycles_[i],
+                    wrong_length_[i]);
     }
   }
   if (feedback.wrench_fresh) {
-    stale_cycles_ = 0;
+    stale_cycles_ = wrong_length_[joints_.size()] = 0;
     return;
   }
   ++counters_.wrenches_missing;
   if (++stale_cycles_ > kMissingCycles) {
-    raise({ArmFaultKind::kSensorStale, sensor_node_, 0, stale_cycles_});
+    raise_missing(ArmFaultKind::kSensorStale, sensor_node_, stale_cycles_,
+                  wrong_length_[joints_.size()]);
   }
 }
 
@@ -178,14 +208,15 @@ void ArmSupervision::check_drives(ArmRequest request) noexcept {
       state_ != ArmState::kStopping) {
     return;
   }
-  for (const JointChannel& joint : joints_) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const JointChannel& joint = joints_[i];
     // A fault from before the enabling is being reset; one after it counts.
     const bool expected_on = state_ == ArmState::kEnabled || joint.reached_enabled();
     if (cia402::is_faulty(joint.state()) && (expected_on || state_ == ArmState::kStopping)) {
-      raise_of_drive(ArmFaultKind::kDriveFault, joint);
+      raise_of_drive(ArmFaultKind::kDriveFault, i);
     } else if (request == ArmRequest::kEnabled && expected_on &&
                joint.state() != DriveState::kOperationEnabled) {
-      raise_of_drive(ArmFaultKind::kDriveState, joint);
+      raise_of_drive(ArmFaultKind::kDriveState, i);
     }
   }
 }
@@ -199,10 +230,10 @@ void ArmSupervision::enable(std::int64_t now_ns) noexcept {
   if (now_ns - entered_ns_ <= kEnablingTimeout_ns) {
     return;
   }
-  for (const JointChannel& joint : joints_) {
-    if (joint.state() != DriveState::kOperationEnabled) {
-      const bool faulty = cia402::is_faulty(joint.state());
-      raise_of_drive(faulty ? ArmFaultKind::kDriveFault : ArmFaultKind::kDriveState, joint);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (joints_[i].state() != DriveState::kOperationEnabled) {
+      const bool faulty = cia402::is_faulty(joints_[i].state());
+      raise_of_drive(faulty ? ArmFaultKind::kDriveFault : ArmFaultKind::kDriveState, i);
     }
   }
 }

@@ -16,12 +16,14 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "hw/arm/arm_counters.h"
 #include "hw/arm/joint_channel.h"
 #include "hw/canopen/emergency.h"
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/heartbeat_watch.h"
+#include "shared/canopen/drive_profile.h"
 #include "shared/cell/robot.h"
 #include "shared/ports/arm.h"
 #include "shared/ports/can_bus.h"
@@ -57,6 +59,8 @@ class ArmSupervision {
   void frame_refused() noexcept { refused_ = true; }
   void take_heartbeat(const canopen::Heartbeat& heartbeat, std::int64_t now_ns) noexcept;
   void take_emergency(const canopen::Emergency& emergency) noexcept;
+  /// Process data of another length than their mapping's. @param data_bytes that came
+  void take_wrong_length(std::uint8_t node, std::uint8_t data_bytes) noexcept;
 
   // Once a cycle.
   void check_heartbeats(std::int64_t now_ns) noexcept;
@@ -74,11 +78,14 @@ class ArmSupervision {
   void check_drives(ArmRequest request) noexcept;
   void check_silence(const ArmFeedback& feedback) noexcept;
   void enable(std::int64_t now_ns) noexcept;
-  void raise_of_drive(ArmFaultKind kind, const JointChannel& joint) noexcept;
+  void raise_of_drive(ArmFaultKind kind, std::size_t joint) noexcept;
+  void raise_missing(ArmFaultKind kind, std::uint8_t node, std::uint32_t cycles,
+                     std::uint8_t wrong_length) noexcept;
   [[nodiscard]] bool all_enabled() const noexcept;
   [[nodiscard]] bool none_energised() const noexcept;
 
   const std::span<const JointChannel> joints_;
+  const std::vector<DriveProfile> drives_;  ///< of the joints
   const std::uint8_t sensor_node_;
   const std::int64_t heartbeat_timeout_ns_;
   ArmCounters& counters_;
@@ -88,10 +95,14 @@ class ArmSupervision {
   ArmFault fault_;
   canopen::HeartbeatWatch watch_;
   std::array<std::uint32_t, kMaxJoints> missing_cycles_{};  ///< in a row
+  std::array<std::uint16_t, kMaxJoints> warned_{};          ///< last error code that only warned
   std::uint32_t stale_cycles_ = 0;                          ///< in a row without a new wrench
   std::uint32_t silent_cycles_ = 0;                         ///< in a row without any answer
   std::uint32_t refused_cycles_ = 0;                        ///< in a row with a refused frame
   bool refused_ = false;                                    ///< in this cycle
+  /// Per joint, and of the sensor behind them: 1 + the length of a frame that was dropped since the
+  /// last good one.
+  std::array<std::uint8_t, kMaxJoints + 1> wrong_length_{};
 };
 
 }  // namespace tenon::hw

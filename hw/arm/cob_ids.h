@@ -12,13 +12,15 @@
 // RPDO2 is used where targets are packed: then 200h + n, with the node of the first of two joints,
 // carries the targets of both, and no controlword.
 //
-// Joints leave their predefined 180h + n because nodes 1 and 2 would meet the force/torque frames
-// there. SYNC, EMCY, SDO, NMT and heartbeat are as predefined by CiA 301.
+// A drive whose identifiers are fixed keeps 180h + n for its TPDO1. Other joints leave their
+// predefined 180h + n because nodes 1 and 2 would meet the force/torque frames there. SYNC, EMCY,
+// SDO, NMT and heartbeat are as predefined by CiA 301.
 
 #include <cstddef>
 #include <cstdint>
 
 #include "shared/canopen/constants.h"
+#include "shared/cell/robot.h"
 
 namespace tenon::hw {
 
@@ -26,7 +28,10 @@ inline constexpr std::uint32_t kForceCobId = 0x181;
 inline constexpr std::uint32_t kTorqueCobId = 0x182;
 inline constexpr std::uint32_t kJointFeedbackCobId = 0x190;
 
-[[nodiscard]] constexpr std::uint32_t joint_feedback_cob_id(std::size_t joint) {
+/// @param joint its place in the robot's order
+[[nodiscard]] inline std::uint32_t joint_feedback_cob_id(const Robot& robot, std::size_t joint) {
+  const Joint& it = robot.joints[joint];
+  if (it.drive.fixed_identifiers) return tenon::canopen::kTpdo1 + it.node;
   return kJointFeedbackCobId + static_cast<std::uint32_t>(joint);
 }
 [[nodiscard]] constexpr std::uint32_t joint_command_cob_id(std::uint8_t node) {

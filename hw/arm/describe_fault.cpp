@@ -19,18 +19,24 @@ namespace {
 
 using canopen::ObjectSetting;
 
-std::string node_name(const ArmFault& fault, const Robot& robot) {
+std::string node_name(std::uint8_t node, const Robot& robot) {
   std::string owner = "not of this robot";
   for (const Joint& joint : robot.joints) {
-    if (joint.node == fault.node) owner = joint.name;
+    if (joint.node == node) owner = joint.name;
   }
-  if (robot.sensor.node == fault.node) owner = "force/torque sensor";
-  return format("node %u (", static_cast<unsigned>(fault.node)) + owner + "): ";
+  if (robot.sensor.node == node) owner = "force/torque sensor";
+  return format("node %u (", static_cast<unsigned>(node)) + owner + "): ";
 }
 
-std::string object_name(const ArmFault& fault) {
-  return format("%04Xh:%u", fault.object >> 8, fault.object & 0xFFu);
+std::string node_name(const ArmFault& fault, const Robot& robot) {
+  return node_name(fault.node, robot);
 }
+
+std::string object_name(std::uint32_t object) {
+  return format("%04Xh:%u", object >> 8, object & 0xFFu);
+}
+
+std::string object_name(const ArmFault& fault) { return object_name(fault.object); }
 
 /// What the object was configured to be; the last time, where it was written twice.
 std::optional<ObjectSetting> setting_of(const ArmFault& fault, const Robot& robot) {
@@ -47,7 +53,7 @@ std::optional<ObjectSetting> setting_of(const ArmFault& fault, const Robot& robo
   return found;
 }
 
-std::string no_answer(const ArmFault& fault) {
+std::string no_answer(const ArmFault& fault, const Robot& robot) {
   const unsigned node = fault.node;
   if (fault.object != 0) {
     return "no SDO answer for " + object_name(fault) +
@@ -57,9 +63,9 @@ std::string no_answer(const ArmFault& fault) {
   const unsigned heartbeat = tenon::canopen::kHeartbeat + node;
   if (fault.code == tenon::canopen::kStateBootUp) {
     return format(
-        "no boot-up within %.1f s; expected 0x%03X after NMT reset; check power, wiring, bit "
-        "rate, node id",
-        static_cast<double>(BringUp::kBootUpTimeout_ns) * 1e-9, heartbeat);
+        "no boot-up within %.1f s, nor within as long after a second NMT reset; expected 0x%03X; "
+        "check power, wiring, bit rate, node id, and boot_s of its drive's profile",
+        boot_s(robot, fault.node), heartbeat);
   }
   return format(
       "did not become %s within %.1f s; expected 0x%03X#%02X; check the node's error register "
@@ -69,23 +75,34 @@ std::string no_answer(const ArmFault& fault) {
 }
 
 std::string configuration(const ArmFault& fault, const Robot& robot) {
+  if (fault.object == 0) {
+    return format(
+        "%u devices answered to one request; give each its own node id (with one of them "
+        "connected at a time)",
+        fault.code);
+  }
   const std::string object = object_name(fault);
   const unsigned index = fault.object >> 8;
   const auto setting = setting_of(fault, robot);
-  if (setting && setting->action == ObjectSetting::Action::kWriteIfOther &&
+  if (setting && setting->action == ObjectSetting::Action::kWriteIfOther && fault.refused &&
       fault.code == tenon::canopen::kAbortReadOnly) {
     return format(
-        "its PDO mapping %04Xh is fixed (abort 0x%08X) and another than hw/README.md lists; a "
+        "its PDO mapping %04Xh is fixed (abort 0x%08X) and another than hw/PROTOCOL.md lists; a "
         "joint's depends on mode and targets_per_frame",
         index, fault.code);
   }
-  if (const char* reason = canopen::sdo_abort_text(fault.code)) {
+  if (fault.refused) {
+    const char* reason = canopen::sdo_abort_text(fault.code);
     std::string wanted;
     if (setting && setting->action != ObjectSetting::Action::kExpect) {
       wanted = format(" = 0x%X", setting->value);
     }
-    return "refused " + object + wanted + ": " + reason +
-           format(" (abort 0x%08X); check the device's manual and firmware", fault.code);
+    return "refused " + object + wanted + ": " +
+           (reason != nullptr ? reason : "for a reason of its maker's own") +
+           format(
+               " (abort 0x%08X); check the device's manual and firmware, and the profile of its "
+               "drive",
+               fault.code);
   }
   if (index == tenon::canopen::kSupportedModes && setting) {
     return format(
@@ -157,6 +174,13 @@ std::string sensor_invalid(const ArmFault& fault, const Robot& robot) {
   return "reports error " + error_code(fault.code) + "; check the sensor";
 }
 
+std::string wrong_length(const ArmFault& fault) {
+  return format(
+      "its process data come with %u bytes where 8 are mapped; check that nobody else maps its "
+      "TPDO1 and TPDO2 (1A00h, 1A01h), or sends on their identifiers",
+      fault.code);
+}
+
 /// Of a frame that betrays another master (hw/arm/other_master.h).
 const char* master_frame_name(std::uint32_t cob_id) {
   if (cob_id == tenon::canopen::kNmt) return "NMT command";
@@ -172,7 +196,7 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
     case ArmFaultKind::kNone:
       return "no fault";
     case ArmFaultKind::kNoAnswer:
-      return node_name(fault, robot) + no_answer(fault);
+      return node_name(fault, robot) + no_answer(fault, robot);
     case ArmFaultKind::kConfiguration:
       return node_name(fault, robot) + configuration(fault, robot);
     case ArmFaultKind::kHeartbeatLost:
@@ -187,17 +211,20 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
     case ArmFaultKind::kDriveState:
       return node_name(fault, robot) + drive_state(fault);
     case ArmFaultKind::kFeedbackMissing:
-      return node_name(fault, robot) +
-             format(
-                 "no feedback (TPDO1) in %u cycles in a row, at most %u are allowed; check bus "
-                 "load and wiring",
-                 fault.code, ArmSupervision::kMissingCycles);
+      return node_name(fault, robot) + (fault.object != 0
+                                            ? wrong_length(fault)
+                                            : format("no feedback (TPDO1) in %u cycles in a row, "
+                                                     "at most %u are allowed; check bus "
+                                                     "load and wiring",
+                                                     fault.code, ArmSupervision::kMissingCycles));
     case ArmFaultKind::kSensorStale:
       return node_name(fault, robot) +
-             format(
-                 "no new wrench in %u cycles in a row, at most %u are allowed; check that the "
-                 "sensor samples at least once a cycle of %u us",
-                 fault.code, ArmSupervision::kMissingCycles, robot.cycle_us);
+             (fault.object != 0
+                  ? wrong_length(fault)
+                  : format("no new wrench in %u cycles in a row, at most %u are allowed; check "
+                           "that the "
+                           "sensor samples at least once a cycle of %u us",
+                           fault.code, ArmSupervision::kMissingCycles, robot.cycle_us));
     case ArmFaultKind::kSensorInvalid:
       return node_name(fault, robot) + sensor_invalid(fault, robot);
     case ArmFaultKind::kBusDown:
@@ -221,6 +248,21 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
              "bit rate";
   }
   return "unknown fault";
+}
+
+std::string describe(const SettingNote& note, const Robot& robot) {
+  const std::string line = node_name(note.node, robot) + object_name(note.object);
+  switch (note.kind) {
+    case SettingNote::Kind::kAbsent:
+      return line + " does not exist; its profile allows that";
+    case SettingNote::Kind::kOther:
+      return line + format(" holds 0x%X (%u) where 0x%X (%u) was written; taken as it is",
+                           note.found, note.found, note.wanted, note.wanted);
+    case SettingNote::Kind::kTaken:
+      return line + format(" = 0x%X (%u), left as it is", note.found, note.found) +
+             (note.found == note.wanted ? "" : format(" (by the book 0x%X)", note.wanted));
+  }
+  return line;
 }
 
 }  // namespace tenon::hw

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "hw/arm/setting_runner.h"
 #include "shared/cell/robot.h"
 #include "shared/ports/arm.h"
 
@@ -12,5 +13,8 @@ namespace tenon::hw {
 /// Example: "node 3 (z): no boot-up within 1.0 s; expected 0x703 after NMT reset; check power,
 /// wiring, node id".
 [[nodiscard]] std::string describe(const ArmFault& fault, const Robot& robot);
+
+/// "node 2 (y): 6065h:0 holds 0x7D0 (2000) where 0x1388 (5000) was written; taken as it is".
+[[nodiscard]] std::string describe(const SettingNote& note, const Robot& robot);
 
 }  // namespace tenon::hw

@@ -61,7 +61,7 @@ std::vector<BusFrame> frame_set(const Robot& robot) {
   frames.cyclic("torque", kTorqueCobId, 8, robot.sensor.node, CyclePart::kFeedback);
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const Joint& joint = robot.joints[i];
-    frames.cyclic("feedback of " + joint.name, joint_feedback_cob_id(i), 8, joint.node,
+    frames.cyclic("feedback of " + joint.name, joint_feedback_cob_id(robot, i), 8, joint.node,
                   CyclePart::kFeedback);
   }
   if (robot.targets_per_frame == 2) {

@@ -6,8 +6,10 @@
 #include <string>
 
 #include "hw/arm/cob_ids.h"
+#include "hw/arm/drive_settings.h"
 #include "hw/canopen/pdo.h"
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 #include "shared/canopen/constants.h"
 #include "shared/ports/arm.h"
 
@@ -20,49 +22,14 @@ using Action = ObjectSetting::Action;
 using Settings = std::vector<ObjectSetting>;
 
 constexpr std::uint32_t kDriveProfile = 402;
-constexpr std::uint32_t kOptionQuickStopOnLostMaster = 3;
-// And not 6, which holds under power until somebody commands the drive: after a quick stop for want
-// of a master nobody does, and the only way out, disable voltage, lets the axis go before the brake
-// holds it.
-constexpr std::uint32_t kOptionQuickRampThenDisable = 2;
-constexpr std::uint32_t kOptionRampDownThenDisable = 1;
-constexpr std::uint32_t kFollowingTimeout_ms = 10;
-
-/// The magnitude of a length in m or rad, in counts, as a u32 object takes it.
-std::uint32_t counts_of(const Joint& joint, double magnitude) {
-  const double counts = std::round(std::abs(magnitude * joint.counts_per_unit));
-  return static_cast<std::uint32_t>(
-      std::clamp(counts, 1.0, static_cast<double>(std::numeric_limits<std::int32_t>::max())));
-}
-
-void append_supervision(Settings& settings, const Robot& robot, const Joint& joint) {
-  using namespace tenon::canopen;
-  const std::uint32_t consumer =
-      static_cast<std::uint32_t>(robot.master_node) << 16 | robot.heartbeat_timeout_ms;
-  settings.push_back({Action::kWrite, kHeartbeatConsumer, 1, 4, consumer});
-  settings.push_back({Action::kWrite, kAbortConnectionOption, 0, 2, kOptionQuickStopOnLostMaster});
-  settings.push_back({Action::kWrite, kQuickStopOption, 0, 2, kOptionQuickRampThenDisable});
-  settings.push_back({Action::kWrite, kShutdownOption, 0, 2, kOptionRampDownThenDisable});
-  settings.push_back({Action::kWrite, kDisableOption, 0, 2, kOptionRampDownThenDisable});
-  settings.push_back(
-      {Action::kWrite, kQuickStopDeceleration, 0, 4, counts_of(joint, joint.acceleration_max)});
-  settings.push_back(
-      {Action::kWrite, kFollowingWindow, 0, 4, counts_of(joint, joint.following_error_max)});
-  settings.push_back({Action::kWrite, kFollowingTimeout, 0, 2, kFollowingTimeout_ms});
-}
-
-void append_timing_and_mode(Settings& settings, const Robot& robot, const Joint& joint) {
-  using namespace tenon::canopen;
-  const InterpolationPeriod period = interpolation_period(robot.cycle_us).value();
+void append_mode(Settings& settings, const Joint& joint) {
   const auto mode = static_cast<std::uint32_t>(joint.mode);
-  const std::uint32_t mode_bit = 1u << (mode - 1);
-  settings.push_back({Action::kExpect, kSupportedModes, 0, 4, mode_bit, mode_bit});
-  settings.push_back({Action::kWrite, tenon::canopen::kSyncPeriod, 0, 4, robot.cycle_us});
-  settings.push_back({Action::kWrite, kInterpolationPeriod, 1, 1, period.value});
-  settings.push_back(
-      {Action::kWrite, kInterpolationPeriod, 2, 1, static_cast<std::uint8_t>(period.exponent)});
-  settings.push_back({Action::kWrite, kMode, 0, 1, mode});
-  settings.push_back({Action::kAwait, kModeDisplay, 0, 1, mode});
+  settings.push_back({Action::kWrite, tenon::canopen::kMode, 0, 1, mode});
+  settings.push_back({Action::kAwait, tenon::canopen::kModeDisplay, 0, 1, mode});
+}
+
+canopen::PdoFreedom freedom_of(const DriveProfile& drive) {
+  return {!drive.fixed_mapping, !drive.fixed_identifiers, !drive.fixed_transmission_types};
 }
 
 canopen::PdoEntry target_of(const Joint& joint) {
@@ -77,11 +44,13 @@ void append_receive_pdos(Settings& settings, const Robot& robot, std::size_t ind
   const canopen::PdoEntry controlword{tenon::canopen::kControlword, 0, 16};
   const canopen::PdoEntry target = target_of(joint);
   if (robot.targets_per_frame == 1) {
-    canopen::append_pdo(settings, {Direction::kReceive,
-                                   1,
-                                   joint_command_cob_id(joint.node),
-                                   canopen::kEverySync,
-                                   {controlword, target}});
+    canopen::append_pdo(settings,
+                        {Direction::kReceive,
+                         1,
+                         joint_command_cob_id(joint.node),
+                         canopen::kEverySync,
+                         {controlword, target}},
+                        freedom_of(joint.drive));
     return;
   }
   // Both of a pair take the same frame, each its own half.
@@ -103,6 +72,17 @@ void append_receive_pdos(Settings& settings, const Robot& robot, std::size_t ind
                                  joint_controlword_cob_id(joint.node),
                                  canopen::kAtOnce,
                                  {controlword}});
+}
+
+/// What a device sends or acts on unasked.
+void append_unused_pdos(Settings& settings, const Robot& robot, const Joint& joint) {
+  using Direction = PdoConfiguration::Direction;
+  for (std::uint8_t number = robot.targets_per_frame == 1 ? 2 : 3; number <= 4; ++number) {
+    canopen::append_unused_pdo(settings, Direction::kReceive, joint.node, number);
+  }
+  for (std::uint8_t number = 2; number <= 4; ++number) {
+    canopen::append_unused_pdo(settings, Direction::kTransmit, joint.node, number);
+  }
 }
 
 [[noreturn]] void refuse(const Robot& robot, const std::string& what) {
@@ -149,7 +129,39 @@ void check_joint(const Robot& robot, const Joint& joint) {
   }
 }
 
+/// What a drive cannot be told its neighbours must leave room for.
+void check_fixed(const Robot& robot) {
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const Joint& joint = robot.joints[i];
+    const DriveProfile& drive = joint.drive;
+    const bool fixed =
+        drive.fixed_mapping || drive.fixed_identifiers || drive.fixed_transmission_types;
+    if (fixed && robot.targets_per_frame != 1) {
+      refuse(robot, "joint " + joint.name + ": the PDOs of drive " + drive.name +
+                        " are fixed, and no frame of theirs holds two targets; set "
+                        "targets_per_frame: 1");
+    }
+    const std::uint32_t id = joint_feedback_cob_id(robot, i);
+    bool taken = id == kForceCobId || id == kTorqueCobId;
+    for (std::size_t k = 0; k < robot.joints.size(); ++k) {
+      taken = taken || (k != i && joint_feedback_cob_id(robot, k) == id);
+    }
+    if (taken && drive.fixed_identifiers) {
+      refuse(robot, "joint " + joint.name +
+                        format(": its feedback stays at %03Xh, which another frame has (drive %s "
+                               "has fixed identifiers); give it another node than %u",
+                               id, drive.name.c_str(), static_cast<unsigned>(joint.node)));
+    }
+  }
+}
+
 }  // namespace
+
+double boot_s(const Robot& robot, std::uint8_t node) {
+  const auto joint = std::find_if(robot.joints.begin(), robot.joints.end(),
+                                  [&](const Joint& each) { return each.node == node; });
+  return joint == robot.joints.end() ? DriveProfile{}.boot_s : joint->drive.boot_s;
+}
 
 ObjectSetting heartbeat_setting(const Robot& robot) {
   return {Action::kWrite, tenon::canopen::kHeartbeatProducer, 0, 2, robot.heartbeat_ms};
@@ -160,18 +172,21 @@ Settings joint_settings(const Robot& robot, std::size_t index) {
   const Joint& joint = robot.joints.at(index);
   Settings settings;
   settings.push_back({Action::kExpect, kDeviceType, 0, 4, kDriveProfile, 0xFFFF});
-  append_timing_and_mode(settings, robot, joint);
-  append_supervision(settings, robot, joint);
+  append_extra_objects(settings, joint);
+  append_drive_objects(settings, robot, joint, DriveObject::kSupportedModes,
+                       DriveObject::kInterpolationExponent);
+  append_mode(settings, joint);
+  append_drive_objects(settings, robot, joint, DriveObject::kMasterWatch,
+                       DriveObject::kPositionMax);
   append_receive_pdos(settings, robot, index);
   canopen::append_pdo(settings,
                       {PdoConfiguration::Direction::kTransmit,
                        1,
-                       joint_feedback_cob_id(index),
+                       joint_feedback_cob_id(robot, index),
                        canopen::kEverySync,
-                       {{kStatusword, 0, 16}, {kTorqueActual, 0, 16}, {kPositionActual, 0, 32}}});
-  for (const std::uint8_t number : {std::uint8_t{2}, std::uint8_t{3}, std::uint8_t{4}}) {
-    canopen::append_unused_tpdo(settings, joint.node, number);
-  }
+                       {{kStatusword, 0, 16}, {kTorqueActual, 0, 16}, {kPositionActual, 0, 32}}},
+                      freedom_of(joint.drive));
+  if (!joint.drive.fixed_identifiers) append_unused_pdos(settings, robot, joint);
   return settings;
 }
 
@@ -192,7 +207,8 @@ Settings sensor_settings(const Robot& robot) {
     canopen::append_pdo(settings, pdo);
   }
   for (const std::uint8_t number : {std::uint8_t{3}, std::uint8_t{4}}) {
-    canopen::append_unused_tpdo(settings, robot.sensor.node, number);
+    canopen::append_unused_pdo(settings, PdoConfiguration::Direction::kTransmit, robot.sensor.node,
+                               number);
   }
   return settings;
 }
@@ -226,6 +242,7 @@ void check_robot(const Robot& robot) {
   if (robot.targets_per_frame != 1 && robot.targets_per_frame != 2) {
     refuse(robot, std::to_string(robot.targets_per_frame) + " targets a frame, must be 1 or 2");
   }
+  check_fixed(robot);
   if (robot.heartbeat_ms == 0 || robot.heartbeat_timeout_ms > 65535 ||
       robot.heartbeat_timeout_ms < 2 * robot.heartbeat_ms) {
     refuse(robot, "heartbeat of " + std::to_string(robot.heartbeat_ms) + " ms with a timeout of " +

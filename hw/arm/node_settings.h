@@ -12,6 +12,9 @@
 
 namespace tenon::hw {
 
+/// How long a node may take from NMT reset to its boot-up message.
+[[nodiscard]] double boot_s(const Robot& robot, std::uint8_t node);
+
 /// The first setting of every node, because bring-up needs to hear it: heartbeat producer time.
 [[nodiscard]] canopen::ObjectSetting heartbeat_setting(const Robot& robot);
 
@@ -29,7 +32,8 @@ struct InterpolationPeriod {
 
 /// Throws InputError with one line where the robot cannot be driven: no joint or too many, a node
 /// outside 1..127 or used twice, a period that 60C2h cannot hold, gears or times that are not
-/// positive, a master heartbeat slower than half its timeout, targets that no frame holds.
+/// positive, a master heartbeat slower than half its timeout, targets that no frame holds, drives
+/// whose fixed PDOs do not go with the others.
 void check_robot(const Robot& robot);
 
 }  // namespace tenon::hw

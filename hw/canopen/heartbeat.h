@@ -5,6 +5,8 @@
 //   | byte | meaning                                                       |
 //   |    0 | bits 0-6: 00 boot-up, 04 stopped, 05 operational, 7Fh pre-op.; |
 //   |      | bit 7 is the toggle of node guarding, 0 in a heartbeat        |
+//
+// An answer to node guarding, which somebody else may do, tells the state as a heartbeat does.
 
 #include <cstdint>
 #include <optional>
@@ -36,7 +38,9 @@ struct Heartbeat {
       frame.id > base + 127) {
     return std::nullopt;
   }
-  return Heartbeat{static_cast<std::uint8_t>(frame.id - base), frame.data[0]};
+  constexpr unsigned kStateMask = 0x7F;
+  return Heartbeat{static_cast<std::uint8_t>(frame.id - base),
+                   static_cast<std::uint8_t>(frame.data[0] & kStateMask)};
 }
 
 }  // namespace tenon::hw::canopen

@@ -33,10 +33,19 @@ struct PdoConfiguration {
   std::vector<PdoEntry> entries;
 };
 
-void append_pdo(std::vector<ObjectSetting>& settings, const PdoConfiguration& pdo);
+/// What of a PDO can be changed. Where it cannot, mapping and identifier are compared alone, and
+/// so is the type of what the node sends; that of what it receives is left to the node.
+struct PdoFreedom {
+  bool mapping = true;
+  bool identifier = true;
+  bool transmission_type = true;
+};
+
+void append_pdo(std::vector<ObjectSetting>& settings, const PdoConfiguration& pdo,
+                const PdoFreedom& freedom = {});
 
 /// Switches a PDO off that nobody asked for, where the node has it.
-void append_unused_tpdo(std::vector<ObjectSetting>& settings, std::uint8_t node,
-                        std::uint8_t number);
+void append_unused_pdo(std::vector<ObjectSetting>& settings, PdoConfiguration::Direction direction,
+                       std::uint8_t node, std::uint8_t number);
 
 }  // namespace tenon::hw::canopen

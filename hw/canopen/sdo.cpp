@@ -1,7 +1,9 @@
 #include "hw/canopen/sdo.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <utility>
 
 #include "shared/base/bytes.h"
 #include "shared/canopen/constants.h"
@@ -23,6 +25,41 @@ CanFrame request(const SdoAddress& address, unsigned command) {
   frame.data[3] = address.sub;
   return frame;
 }
+
+/// CiA 301, 7.2.4.3.17.
+constexpr std::array<std::pair<std::uint32_t, const char*>, 31> kAbortTexts = {{
+    {0x05030000, "toggle bit not alternated"},
+    {0x05040000, "SDO protocol timed out"},
+    {0x05040001, "command not valid"},
+    {0x05040002, "invalid block size"},
+    {0x05040003, "invalid sequence number"},
+    {0x05040004, "checksum wrong"},
+    {0x05040005, "out of memory"},
+    {0x06010000, "access not supported"},
+    {0x06010001, "object is write-only"},
+    {0x06010002, "object is read-only"},
+    {0x06020000, "object does not exist"},
+    {0x06040041, "object cannot be mapped to a PDO"},
+    {0x06040042, "mapped objects exceed the PDO's length"},
+    {0x06040043, "parameters are incompatible"},
+    {0x06040047, "incompatible inside the device"},
+    {0x06060000, "hardware error"},
+    {0x06070010, "length does not match"},
+    {0x06070012, "too long"},
+    {0x06070013, "too short"},
+    {0x06090011, "sub-index does not exist"},
+    {0x06090030, "value out of range"},
+    {0x06090031, "value too high"},
+    {0x06090032, "value too low"},
+    {0x06090036, "maximum is less than minimum"},
+    {0x060A0023, "resource not available"},
+    {0x08000000, "general error"},
+    {0x08000020, "cannot be stored"},
+    {0x08000021, "cannot be stored: local control"},
+    {0x08000022, "cannot be stored in this device state"},
+    {0x08000023, "no object dictionary"},
+    {0x08000024, "no data available"},
+}};
 
 }  // namespace
 
@@ -61,61 +98,9 @@ CanFrame sdo_abort(const SdoAddress& address, std::uint32_t code) {
 }
 
 const char* sdo_abort_text(std::uint32_t code) {
-  switch (code) {
-    case 0x05030000:
-      return "toggle bit not alternated";
-    case 0x05040000:
-      return "SDO protocol timed out";
-    case 0x05040001:
-      return "command not valid";
-    case 0x05040005:
-      return "out of memory";
-    case 0x06010000:
-      return "access not supported";
-    case 0x06010001:
-      return "object is write-only";
-    case 0x06010002:
-      return "object is read-only";
-    case 0x06020000:
-      return "object does not exist";
-    case 0x06040041:
-      return "object cannot be mapped to a PDO";
-    case 0x06040042:
-      return "mapped objects exceed the PDO's length";
-    case 0x06040043:
-      return "parameters are incompatible";
-    case 0x06040047:
-      return "incompatible inside the device";
-    case 0x06060000:
-      return "hardware error";
-    case 0x06070010:
-      return "length does not match";
-    case 0x06070012:
-      return "too long";
-    case 0x06070013:
-      return "too short";
-    case 0x06090011:
-      return "sub-index does not exist";
-    case 0x06090030:
-      return "value out of range";
-    case 0x06090031:
-      return "value too high";
-    case 0x06090032:
-      return "value too low";
-    case 0x06090036:
-      return "maximum is less than minimum";
-    case 0x08000000:
-      return "general error";
-    case 0x08000020:
-      return "cannot be stored";
-    case 0x08000021:
-      return "cannot be stored: local control";
-    case 0x08000022:
-      return "cannot be stored in this device state";
-    case 0x08000023:
-      return "no object dictionary";
-  }
-  return nullptr;
+  const auto found = std::find_if(kAbortTexts.begin(), kAbortTexts.end(),
+                                  [code](const auto& entry) { return entry.first == code; });
+  return found == kAbortTexts.end() ? nullptr : found->second;
 }
 
 }  // namespace tenon::hw::canopen

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/canopen/drive_profile.h"
 #include "shared/cell/cell.h"
 #include "shared/experiment/world_ranges.h"
 #include "shared/plan/plan.h"
@@ -22,13 +23,17 @@ namespace tenon {
 /// The names of a task file's variants, in its order.
 [[nodiscard]] std::vector<std::string> task_variants(const std::filesystem::path& file);
 
-/// hw/robots/NAME/robot.yaml and the URDF that it names.
+/// hw/drives/NAME.yaml. What the file leaves out is CiA 402 by the book.
+[[nodiscard]] DriveProfile load_drive(const std::filesystem::path& file);
+
+/// hw/robots/NAME/robot.yaml, the URDF that it names, and the profiles of the drives that it names.
 [[nodiscard]] Robot load_robot(const std::filesystem::path& file);
 
 /// hw/cells/NAME.yaml. The robot is named relative to the cell's file.
 [[nodiscard]] Cell load_cell(const std::filesystem::path& file);
 
-/// The files that a cell is made of, in a fixed order: its own, and all in its robot's folder.
+/// The files that a cell is made of, in a fixed order: its own, all in its robot's folder, and the
+/// profiles of its drives.
 [[nodiscard]] std::vector<std::filesystem::path> cell_files(const std::filesystem::path& file);
 
 /// sim/experiments/*.yaml.

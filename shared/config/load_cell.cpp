@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/config/drive_file.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/yaml_value.h"
+#include "shared/ports/arm.h"
 
 namespace tenon {
 namespace {
@@ -20,6 +22,21 @@ SensorBias read_bias(const Value& value, const ForceTorqueSensor& sensor) {
   bias.force_tolerance_N = map.number("force_tolerance_N", positive_to(sensor.force_range_N));
   bias.torque_tolerance_Nm = map.number("torque_tolerance_Nm", positive_to(sensor.torque_range_Nm));
   return bias;
+}
+
+/// Of a robot that cannot be read there are none; load_cell() says why.
+void append_drive_files(const std::filesystem::path& robot_file,
+                        std::vector<std::filesystem::path>& files) {
+  if (!std::filesystem::is_regular_file(robot_file)) return;
+  const auto robot = Value::parse(robot_file, config::read_file(robot_file));
+  const auto joints = robot.peek("joints");
+  if (!joints) return;
+  for (const Value& joint : joints->list(1, kMaxJoints)) {
+    const auto drive = joint.peek("drive");
+    if (!drive) continue;
+    const std::filesystem::path file = drive_file(robot_file, drive->text());
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  }
 }
 
 }  // namespace
@@ -78,6 +95,9 @@ std::vector<std::filesystem::path> cell_files(const std::filesystem::path& file)
   }
   std::sort(files.begin(), files.end());
   files.insert(files.begin(), file);
+  if (const auto robot = cell.peek("robot")) {
+    append_drive_files((file.parent_path() / robot->text()).lexically_normal(), files);
+  }
   return files;
 }
 

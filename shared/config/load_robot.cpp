@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "shared/base/text.h"
+#include "shared/canopen/drive_profile.h"
+#include "shared/config/drive_file.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/urdf_chain.h"
@@ -55,15 +58,46 @@ void read_counts(const Map& map, const JointKeys& keys, Joint& joint) {
   }
 }
 
+/// The profiles that a robot's joints name, each read once.
+class Drives {
+ public:
+  explicit Drives(const std::filesystem::path& robot_file) : robot_file_(robot_file) {}
+
+  [[nodiscard]] const DriveProfile& read(const Value& name) {
+    const auto file = drive_file(robot_file_, name.text());
+    const auto [found, fresh] = read_.try_emplace(file);
+    if (fresh) {
+      if (!std::filesystem::exists(file)) {
+        name.refuse_value("a drive profile: " + file.string() + " does not exist");
+      }
+      found->second = load_drive(file);
+    }
+    return found->second;
+  }
+
+ private:
+  std::filesystem::path robot_file_;
+  std::map<std::filesystem::path, DriveProfile> read_;
+};
+
+Joint::Mode read_mode(const Value& value, const DriveProfile& drive) {
+  const std::uint8_t mode = value.choice({"7", "8"}) == 0 ? 7 : 8;
+  if (std::find(drive.modes.begin(), drive.modes.end(), mode) == drive.modes.end()) {
+    value.refuse_value(format("%u, as drive ", static_cast<unsigned>(drive.modes.front())) +
+                       drive.name + " offers");
+  }
+  return static_cast<Joint::Mode>(mode);
+}
+
 /// What drive and bus add to a joint of the URDF.
-void read_drive(const Value& value, std::set<std::int64_t>& nodes, Joint& joint) {
+void read_drive(const Value& value, std::set<std::int64_t>& nodes, Drives& drives, Joint& joint) {
   const JointKeys& keys = joint.kind == Joint::Kind::kPrismatic ? kPrismaticKeys : kRevoluteKeys;
-  const Map map(value,
-                {"name", "node", "mode", "zero_counts", keys.counts_per_unit, keys.acceleration_max,
-                 keys.rated_effort, keys.following_error_max, keys.stiffness});
+  const Map map(
+      value, {"name", "node", "drive", "mode", "zero_counts", keys.counts_per_unit,
+              keys.acceleration_max, keys.rated_effort, keys.following_error_max, keys.stiffness});
   joint.node = read_node(map.at("node"), nodes);
-  joint.mode = map.at("mode").choice({"7", "8"}) == 0 ? Joint::Mode::kInterpolatedPosition
-                                                      : Joint::Mode::kCyclicSynchronousPosition;
+  if (const auto drive = map.find("drive")) joint.drive = drives.read(*drive);
+  joint.mode = read_mode(map.at("mode"), joint.drive);
   read_counts(map, keys, joint);
   joint.acceleration_max = map.number(keys.acceleration_max, positive_to(1e4));
   joint.rated_effort = map.number(keys.rated_effort, positive_to(1e5));
@@ -73,7 +107,7 @@ void read_drive(const Value& value, std::set<std::int64_t>& nodes, Joint& joint)
 
 /// Every joint of the URDF once, in any order; the URDF's order is the chain's.
 void read_joints(const Value& value, const std::string& urdf, std::set<std::int64_t>& nodes,
-                 std::vector<Joint>& joints) {
+                 Drives& drives, std::vector<Joint>& joints) {
   std::set<std::string> read;
   for (const Value& entry : value.list(1, kMaxJoints)) {
     // The other keys depend on the joint that it names.
@@ -83,7 +117,7 @@ void read_joints(const Value& value, const std::string& urdf, std::set<std::int6
                                     [&](const Joint& each) { return each.name == name->text(); });
     if (joint == joints.end()) name->refuse_value("a revolute or prismatic joint of " + urdf);
     if (!read.insert(joint->name).second) name->refuse_value("listed once");
-    read_drive(entry, nodes, *joint);
+    read_drive(entry, nodes, drives, *joint);
   }
   for (const Joint& joint : joints) {
     if (!read.contains(joint.name)) value.refuse("lacks joint " + joint.name + " of " + urdf);
@@ -153,7 +187,8 @@ Robot load_robot(const std::filesystem::path& file) {
   robot.joints = std::move(chain.joints);
   robot.flange = chain.flange;
   std::set<std::int64_t> nodes;
-  read_joints(map.at("joints"), urdf, nodes, robot.joints);
+  Drives drives(file);
+  read_joints(map.at("joints"), urdf, nodes, drives, robot.joints);
   robot.sensor = read_sensor(map.at("sensor"), nodes);
   read_bus(map.at("bus"), nodes, robot);
 

@@ -66,6 +66,7 @@ class Value {
 
   /// The value of a key before the mapping as a whole is checked, where other keys depend on it.
   [[nodiscard]] std::optional<Value> peek(std::string_view key) const;
+  [[nodiscard]] bool is_mapping() const { return node_.IsMap(); }
   /// The keys of a mapping whose keys are names, each once, in the file's order.
   [[nodiscard]] std::vector<std::string> keys() const;
 

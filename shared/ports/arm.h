@@ -54,6 +54,7 @@ struct ArmFault {
   std::uint8_t node = 0;     ///< CANopen node, 0 where none is meant
   std::uint32_t object = 0;  ///< index << 8 | sub-index of the object concerned, or 0
   std::uint32_t code = 0;    ///< EMCY or error code, SDO abort code, or statusword
+  bool refused = false;      ///< of kConfiguration: code is an abort code, and no value
 };
 
 struct ArmFeedback {

@@ -46,6 +46,7 @@ TEST(BringUp, WritesTheDriveThisConfigurationInThisOrder) {
       {0x140001, 0x00000202}, {0x180001, 0xC0000191}, {0x180002, 1},
       {0x1A0000, 0},          {0x1A0001, 0x60410010}, {0x1A0002, 0x60770010},
       {0x1A0003, 0x60640020}, {0x1A0000, 3},          {0x180001, 0x40000191},
+      {0x140101, 0x80000302},  // a second RPDO that nobody needs
       {0x180101, 0xC0000282},  // the second TPDO that it had on
   };
   EXPECT_EQ(written, expected);
@@ -93,15 +94,16 @@ TEST(BringUp, NodeThatDoesNotAnswerIsNamedWithWhatWasExpected) {
   gantry.nodes[2]->dead = true;
   const std::int64_t start_ns = gantry.now_ns;
   EXPECT_EQ(failure(gantry),
-            "node 3 (z): no boot-up within 1.0 s; expected 0x703 after NMT reset; check power, "
-            "wiring, bit rate, node id");
-  EXPECT_EQ(gantry.now_ns - start_ns, 1'300'000'000);  // of which it listens 0.3 s
+            "node 3 (z): no boot-up within 1.0 s, nor within as long after a second NMT reset; "
+            "expected 0x703; check power, wiring, bit rate, node id, and boot_s of its drive's "
+            "profile");
+  EXPECT_EQ(gantry.now_ns - start_ns, 2'300'000'000);  // of which it listens 0.3 s
 }
 
 TEST(BringUp, NodeThatWakesLateIsResetOnceMore) {
   GantryOnBus gantry;
   gantry.nodes[2]->dead = true;
-  EXPECT_FALSE(gantry.prepare(600));
+  EXPECT_FALSE(gantry.prepare(1100));
   gantry.nodes[2]->dead = false;
   EXPECT_TRUE(gantry.prepare());
 }
@@ -111,7 +113,7 @@ TEST(BringUp, RefusedObjectIsNamedWithItsAbort) {
   gantry.nodes[0]->refuses[0x60C201] = 0x06090030;
   EXPECT_EQ(failure(gantry),
             "node 1 (x): refused 60C2h:1 = 0x2: value out of range (abort 0x06090030); check the "
-            "device's manual and firmware");
+            "device's manual and firmware, and the profile of its drive");
 }
 
 // As an LWA 4P has them: mapped for interpolated position, and nobody can change that.
@@ -134,7 +136,7 @@ TEST(BringUp, AFixedMappingThatIsTheOneWantedIsTakenAsItIs) {
     if (write.object >> 8 >= 0x1400 && write.object >> 8 < 0x1C00) pdos.push_back(write.object);
   }
   EXPECT_EQ(pdos, (std::vector<std::uint32_t>{0x140001, 0x140002, 0x140001, 0x180001, 0x180002,
-                                              0x180001, 0x180101}));
+                                              0x180001, 0x140101, 0x180101}));
   JointVector target = gantry.feedback.position;
   target[0] += 0.001;
   for (int i = 0; i < 3; ++i) gantry.cycle(ArmRequest::kEnabled, target);
@@ -146,7 +148,7 @@ TEST(BringUp, AFixedMappingThatIsAnotherIsNamed) {
   fix_mapping(*gantry.nodes[0], 0x60C10120);  // where mode 8 needs 607Ah
   EXPECT_EQ(failure(gantry),
             "node 1 (x): its PDO mapping 1600h is fixed (abort 0x06010002) and another than "
-            "hw/README.md lists; a joint's depends on mode and targets_per_frame");
+            "hw/PROTOCOL.md lists; a joint's depends on mode and targets_per_frame");
 }
 
 TEST(BringUp, ValueThatIsNotKeptIsNoticedOnReadBack) {

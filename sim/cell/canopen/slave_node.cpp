@@ -10,9 +10,7 @@ namespace {
 constexpr std::uint16_t kDeviceName = 0x1008;
 constexpr std::uint16_t kHardwareVersion = 0x1009;
 constexpr std::uint16_t kSoftwareVersion = 0x100A;
-constexpr std::uint16_t kStore = 0x1010;
 constexpr std::uint16_t kRestore = 0x1011;
-constexpr std::uint16_t kSyncOverflow = 0x1019;
 constexpr std::uint16_t kErrorBehaviour = 0x1029;
 constexpr std::uint16_t kLabel = 0x2000;
 constexpr std::size_t kLabelBytesMax = 32;
@@ -96,7 +94,7 @@ void SlaveNode::add_sync_objects() {
   sync_window_ = add(canopen::kSyncWindow,
                      {.name = "Synchronous window length", .type = kU32, .access = kReadWrite});
   sync_overflow_ =
-      add(kSyncOverflow, {.name = "Synchronous counter overflow value",
+      add(canopen::kSyncOverflow, {.name = "Synchronous counter overflow value",
                           .type = kU8,
                           .access = kReadWrite,
                           .high = 240,
@@ -157,7 +155,7 @@ void SlaveNode::add_storage_objects() {
                                             return 0U;
                                           }});
   };
-  add(kStore, "Store parameters", "Save all parameters", kSignatureSave,
+  add(canopen::kStoreParameters, "Store parameters", "Save all parameters", kSignatureSave,
       &ObjectDictionary::store_settings);
   add(kRestore, "Restore default parameters", "Restore all default parameters", kSignatureLoad,
       &ObjectDictionary::restore_defaults);

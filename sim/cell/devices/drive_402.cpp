@@ -1,5 +1,6 @@
 #include "sim/cell/devices/drive_402.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -73,7 +74,11 @@ void Drive402::on_reset(std::int64_t now_ns) {
 void Drive402::on_sync() {
   if (!interpolates() || halted_) return;
   const ObjectEntry& target = cyclic() ? objects_.target_position : objects_.interpolation_data;
-  motion_.set_target(static_cast<double>(target.value), objects_.interpolation_period_ns());
+  // 607Dh cuts targets; limits that exclude each other are none.
+  const std::int64_t low = objects_.position_min.value;
+  const std::int64_t high = objects_.position_max.value;
+  const std::int64_t counts = low < high ? std::clamp(target.value, low, high) : target.value;
+  motion_.set_target(static_cast<double>(counts), objects_.interpolation_period_ns());
 }
 
 void Drive402::on_connection_lost() {

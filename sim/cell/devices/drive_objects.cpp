@@ -58,6 +58,9 @@ constexpr std::array kRows = {
     Row{0x6077, 0, "Torque actual value", kI16, kRo, kTpdo},
     Row{0x6079, 0, "DC link circuit voltage", kU32, kRo, kTpdo},
     Row{0x607A, 0, "Target position", kI32, kRw, kRpdo},
+    Row{0x607D, 0, "Highest sub-index supported", kU8, kRo, kNo, 2},
+    Row{0x607D, 1, "Min position limit", kI32, kRw, kNo, -2147483648LL},
+    Row{0x607D, 2, "Max position limit", kI32, kRw, kNo, 2147483647},
     Row{0x6084, 0, "Profile deceleration", kU32, kRw, kNo, 0, 1},
     Row{0x6085, 0, "Quick stop deceleration", kU32, kRw, kNo, 0, 1},
     Row{0x60C1, 0, "Highest sub-index supported", kU8, kRo, kNo, 1},
@@ -88,6 +91,7 @@ ObjectDictionary& add_rows(ObjectDictionary& dictionary, const DriveObjects::Hoo
     if (row.index == canopen::kQuickStopOption) entry.on_write = check_quick_stop;
     dictionary.add(object_id(row.index, row.sub), std::move(entry));
   }
+  dictionary.describe(canopen::kPositionLimits, {"Software position limit", Structure::kArray});
   dictionary.describe(canopen::kInterpolationData,
                       {"Interpolation data record", Structure::kArray});
   dictionary.describe(canopen::kInterpolationPeriod,

@@ -50,6 +50,8 @@ class DriveObjects {
   ObjectEntry& torque_actual = at(canopen::kTorqueActual);
   ObjectEntry& supply_mV = at(0x6079);
   ObjectEntry& target_position = at(canopen::kTargetPosition);
+  ObjectEntry& position_min = at(canopen::kPositionLimits, 1);
+  ObjectEntry& position_max = at(canopen::kPositionLimits, 2);
   ObjectEntry& deceleration = at(0x6084);
   ObjectEntry& quick_stop_deceleration = at(canopen::kQuickStopDeceleration);
   ObjectEntry& interpolation_data = at(canopen::kInterpolationData, 1);
