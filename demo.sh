@@ -44,7 +44,7 @@ echo
 bin=build/release/bin
 task_file=planner/tasks/$task.yaml cell_file=hw/cells/$cell.yaml
 mkdir -p "$output"
-rm -f "$output"/{plan.tnp,plan.html,truth.json,sim.out,run.lcmlog,run.candump,result.json,black-box.csv}
+rm -f "$output"/{plan.tnp,plan.html,truth.json,sim.out,run.lcmlog,run.can.log,result.json,black-box.csv}
 
 echo "== Plan: $task from start $start, positions uncertain"
 "$bin/tenon-plan" "$task_file" --start "$start" --cell "$cell_file" --threads "$(nproc)" -o "$output/plan.tnp"
@@ -76,7 +76,7 @@ echo
 echo "== Execute over CANopen in real time"
 executed=0
 "$bin/tenon-exec" --cell "$cell_file" --plan "$output/plan.tnp" --can "slcan://127.0.0.1:$port" \
-  --rt prefer --log "$output/run.lcmlog" --can-log "$output/run.candump" \
+  --rt prefer --log "$output/run.lcmlog" --can-log "$output/run.can.log" \
   --json "$output/result.json" --black-box "$output/black-box.csv" || executed=$?
 wait "$sim" || true
 trap - EXIT

@@ -40,7 +40,7 @@ void add_outputs(CLI::App& app, Options& options) {
   app.add_option("--lcm-url", options.lcm_url, "where telemetry goes, or none")
       ->capture_default_str();
   app.add_option("--log", options.log, "telemetry log for lcm-logplayer");
-  app.add_option("--can-log", options.can_log, "frames in candump's format");
+  app.add_option("--can-log", options.can_log, "frames in candump's format, FILE.log");
   app.add_option("--json", options.json, "result, - for standard output");
   app.add_option("--black-box", options.black_box, "the last second as CSV, after a fault")
       ->capture_default_str();

@@ -22,7 +22,8 @@ namespace tenon::executor {
 /// The frames that pass on the bus, written on the recorder's thread.
 class CanLog : public RecordConsumer {
  public:
-  explicit CanLog(const std::string& file) : log_(file) {}
+  explicit CanLog(const std::string& file)
+      : log_(file, "can0", 1000 * wall_clock_us() - monotonic_now_ns()) {}
   void consume(const CycleRecord& /*record*/) override { drain(); }
   void drain() { log_.drain(ring_); }
   [[nodiscard]] RecordReport close() { return log_.close(ring_); }

@@ -1,11 +1,13 @@
 #pragma once
-// Writes frames in candump's log format, which canplayer, log2asc and Wireshark read:
+// Writes frames in candump's log format, which canplayer, log2asc, python-can and Wireshark read;
+// some of them know it by the suffix .log alone:
 //
 //   (1.500000) can0 201#0F000102        11 bit      (1.500000) can0 00012345#0102   29 bit
 //   (1.500000) can0 201#R6              remote, 6 bytes asked for
 //
 // Not real-time (files, strings): belongs to the thread that empties the ring.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -21,7 +23,10 @@ namespace tenon::hw {
 class CandumpLog {
  public:
   /// Throws InputError where the file cannot be written.
-  explicit CandumpLog(const std::filesystem::path& file, std::string interface = "can0");
+  /// @param unix_offset_ns what is added to a frame's time to make it one since 1970, as other
+  /// tools have them; 0: times stay as they are
+  explicit CandumpLog(const std::filesystem::path& file, std::string interface = "can0",
+                      std::int64_t unix_offset_ns = 0);
 
   /// Writes everything that the ring holds and hands it to the system.
   void drain(CanRecordRing& ring);
@@ -31,6 +36,7 @@ class CandumpLog {
  private:
   RecordFile file_;
   std::string interface_;
+  std::int64_t unix_offset_ns_;
 };
 
 }  // namespace tenon::hw
