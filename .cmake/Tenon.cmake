@@ -14,7 +14,7 @@
 # ---------------------------------------------------------------------------------------------
 # Who may use whom. One row per target: everything that it may link, and therefore include.
 # ---------------------------------------------------------------------------------------------
-set(TENON_LIBRARIES shared shared_system shared_drawing shared_config lcmtypes
+set(TENON_LIBRARIES shared shared_system shared_drawing shared_eds shared_config lcmtypes
     planner planner_belief planner_search planner_judge planner_report
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
@@ -24,6 +24,7 @@ set(TENON_LIBRARIES shared shared_system shared_drawing shared_config lcmtypes
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
 set(TENON_MAY_USE_shared_system shared Threads::Threads)
 set(TENON_MAY_USE_shared_drawing shared)
+set(TENON_MAY_USE_shared_eds    shared)
 set(TENON_MAY_USE_shared_config shared shared_system yaml-cpp urdfdom::urdfdom_model
                                 console_bridge::console_bridge nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)

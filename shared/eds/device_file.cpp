@@ -1,0 +1,359 @@
+#include "shared/eds/device_file.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+#include "shared/base/error.h"
+#include "shared/base/text.h"
+#include "shared/eds/ini_file.h"
+
+namespace tenon {
+namespace {
+
+constexpr std::size_t kObjectsMax = 100'000;
+constexpr std::int64_t kSubMax = 254;
+constexpr std::uint16_t kUnsigned8 = 0x0005;
+constexpr unsigned kObjectDomain = 2;
+constexpr unsigned kObjectVariable = 7;
+constexpr unsigned kObjectArray = 8;
+constexpr unsigned kObjectRecord = 9;
+
+std::optional<std::uint64_t> digits(std::string_view text, int base) {
+  std::uint64_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number, base);
+  if (text.empty() || error != std::errc{} || rest != end) return std::nullopt;
+  return number;
+}
+
+/// Decimal, 0x.., or octal with a leading 0, as in C; with a sign. 64 bits as they are.
+std::optional<std::int64_t> parsed_number(std::string_view text) {
+  const bool negative = text.starts_with('-');
+  if (negative || text.starts_with('+')) text.remove_prefix(1);
+  std::optional<std::uint64_t> number;
+  if (text.starts_with("0x") || text.starts_with("0X")) {
+    number = digits(text.substr(2), 16);
+  } else {
+    const bool octal = text.size() > 1 && text.front() == '0' &&
+                       text.find_first_of("89") == std::string_view::npos;
+    number = digits(text, octal ? 8 : 10);
+  }
+  if (!number) return std::nullopt;
+  return static_cast<std::int64_t>(negative ? 0 - *number : *number);
+}
+
+/// "1018" or "1018sub0" of a section's name in small letters.
+std::optional<DeviceObjectId> object_of_section(const std::string& name) {
+  const std::size_t sub_at = name.find("sub");
+  const std::string_view index_text = trimmed(std::string_view(name).substr(0, sub_at));
+  if (index_text.size() != 4) return std::nullopt;
+  const auto index = digits(index_text, 16);
+  if (!index) return std::nullopt;
+  if (sub_at == std::string::npos) return static_cast<DeviceObjectId>(*index << 8);
+  const auto sub = digits(trimmed(std::string_view(name).substr(sub_at + 3)), 16);
+  if (!sub || *sub > 0xFF) return std::nullopt;
+  return static_cast<DeviceObjectId>(*index << 8 | *sub);
+}
+
+class Reader {
+ public:
+  Reader(const std::string& name, const std::string& text) : ini_(name, text) { file_.name = name; }
+
+  DeviceFile read() {
+    read_device();
+    read_lists();
+    for (const auto& [name, section] : ini_.sections()) {
+      const auto id = object_of_section(name);
+      if (!id || name.find("sub") != std::string::npos) continue;
+      read_index(static_cast<std::uint16_t>(*id >> 8), section);
+    }
+    for (const auto& [name, section] : ini_.sections()) {
+      const auto id = object_of_section(name);
+      if (id && name.find("sub") != std::string::npos) read_stray_sub(*id, section);
+    }
+    if (file_.objects.empty()) ini_.refuse(1, "describes no object; is it an EDS or DCF file?");
+    file_.slips = std::move(ini_.slips());
+    return std::move(file_);
+  }
+
+ private:
+  void read_device();
+  void read_lists();
+  void read_index(std::uint16_t index, const IniSection& section);
+  void read_subs(std::uint16_t index, const IniSection& section);
+  void read_compact(std::uint16_t index, const IniSection& section, std::int64_t count);
+  void read_stray_sub(DeviceObjectId id, const IniSection& section);
+  void read_object(DeviceObjectId id, const IniSection& section);
+  bool read_type(const IniSection& section, DeviceObject& object);
+  void read_access(const IniSection& section, DeviceObject& object);
+  void read_value(const IniSection& section, DeviceObject& object);
+  [[nodiscard]] std::optional<std::int64_t> read_limit(const IniSection& section,
+                                                       const std::string& key,
+                                                       const DeviceObject& object);
+  void add(DeviceObjectId id, DeviceObject object);
+
+  /// A number of a section; unset where it is missing or empty.
+  [[nodiscard]] std::optional<std::int64_t> number(const IniSection& section,
+                                                   const std::string& key) const;
+  [[nodiscard]] std::int64_t fitted(const DeviceObject& object, std::int64_t value,
+                                    const IniValue& from);
+
+  IniFile ini_;
+  DeviceFile file_;
+};
+
+std::optional<std::int64_t> Reader::number(const IniSection& section,
+                                           const std::string& key) const {
+  const IniValue* value = section.find(key);
+  if (value == nullptr || value->text.empty()) return std::nullopt;
+  const auto number = parsed_number(value->text);
+  if (!number) {
+    ini_.refuse(value->line, "[" + section.name + "] " + key + " = " + value->text +
+                                 ", must be a number such as 8, 0x6040 or 010");
+  }
+  return number;
+}
+
+void Reader::read_device() {
+  if (const IniSection* info = ini_.find("deviceinfo")) {
+    if (const IniValue* vendor = info->find("vendorname")) file_.vendor = vendor->text;
+    if (const IniValue* product = info->find("productname")) file_.product = product->text;
+  } else {
+    ini_.slip(1, "has no section [DeviceInfo]");
+  }
+  // The standard spells it with one m; many files do not.
+  for (const char* name : {"devicecomissioning", "devicecommissioning"}) {
+    const IniSection* section = ini_.find(name);
+    const auto node = section == nullptr ? std::nullopt : number(*section, "nodeid");
+    if (!node) continue;
+    if (*node < 1 || *node > 127) {
+      ini_.refuse(section->line, "NodeID = " + std::to_string(*node) + ", must be in [1, 127]");
+    }
+    file_.node = static_cast<std::uint8_t>(*node);
+  }
+}
+
+/// What the lists name must be described; an object without a list is one all the same.
+void Reader::read_lists() {
+  for (const char* name : {"mandatoryobjects", "optionalobjects", "manufacturerobjects"}) {
+    const IniSection* list = ini_.find(name);
+    if (list == nullptr) {
+      ini_.slip(1, std::string("has no section [") + name + "]");
+      continue;
+    }
+    for (const auto& [key, value] : list->values) {
+      if (key == "supportedobjects" || value.text.empty()) continue;
+      const auto index = parsed_number(value.text);
+      if (!index || *index < 0 || *index > 0xFFFF) {
+        ini_.refuse(value.line, "[" + list->name + "] " + key + " = " + value.text +
+                                    ", must be an index such as 0x6040");
+      }
+      if (ini_.find(lower_case(format("%04X", static_cast<unsigned>(*index)))) == nullptr) {
+        ini_.slip(value.line, "[" + list->name + "] lists " + value.text +
+                                  ", which no section describes; taken as missing");
+      }
+    }
+  }
+}
+
+void Reader::read_index(std::uint16_t index, const IniSection& section) {
+  const auto id = static_cast<DeviceObjectId>(index) << 8;
+  const std::int64_t kind = number(section, "objecttype").value_or(kObjectVariable);
+  const auto compact = number(section, "compactsubobj");
+  if (compact.value_or(0) != 0) {
+    if (*compact < 0 || *compact > kSubMax) {
+      ini_.refuse(section.find("compactsubobj")->line,
+                  "[" + section.name + "] CompactSubObj = " + std::to_string(*compact) +
+                      ", must be in [0, 254]");
+    }
+    return read_compact(index, section, *compact);
+  }
+  if (kind == kObjectArray || kind == kObjectRecord) return read_subs(index, section);
+  if (kind != kObjectVariable && kind != kObjectDomain) {
+    return;  // types and the like: nothing that is read or written
+  }
+  if (kind == kObjectDomain && section.find("datatype") == nullptr) {
+    return add(id, {.name = "", .type = 0x000F, .line = section.line});
+  }
+  read_object(id, section);
+}
+
+void Reader::read_subs(std::uint16_t index, const IniSection& section) {
+  const auto announced = number(section, "subnumber");
+  std::int64_t found = 0;
+  for (unsigned sub = 0; sub <= 0xFF; ++sub) {
+    const std::string prefix = lower_case(format("%04X", static_cast<unsigned>(index))) + "sub";
+    const IniSection* entry = ini_.find(prefix + lower_case(format("%X", sub)));
+    if (entry == nullptr) entry = ini_.find(prefix + lower_case(format("%02X", sub)));
+    if (entry == nullptr) continue;
+    ++found;
+    read_object(static_cast<DeviceObjectId>(index) << 8 | sub, *entry);
+  }
+  if (!announced) {
+    ini_.slip(section.line, "[" + section.name + "] lacks SubNumber; its sections are counted");
+  } else if (*announced != found) {
+    ini_.slip(section.line, "[" + section.name + "] SubNumber = " + std::to_string(*announced) +
+                                ", but " + std::to_string(found) +
+                                " sub-indices are described; those are taken");
+  }
+}
+
+/// One section for an array: sub-index 0 counts, the others are alike but for [xxxxValue].
+void Reader::read_compact(std::uint16_t index, const IniSection& section, std::int64_t count) {
+  const auto id = static_cast<DeviceObjectId>(index) << 8;
+  DeviceObject count_object{.name = "Highest sub-index supported",
+                            .type = kUnsigned8,
+                            .access = DeviceObject::Access::kReadOnly,
+                            .line = section.line};
+  count_object.value = count;
+  add(id, count_object);
+  const IniSection* values =
+      ini_.find(lower_case(format("%04X", static_cast<unsigned>(index))) + "value");
+  for (std::int64_t sub = 1; sub <= count; ++sub) {
+    const auto sub_id = id | static_cast<DeviceObjectId>(sub);
+    read_object(sub_id, section);
+    const auto entry = file_.objects.find(sub_id);
+    if (values == nullptr || entry == file_.objects.end()) continue;
+    const IniValue* value = values->find(std::to_string(sub));
+    if (value == nullptr) continue;
+    IniSection one{values->name, values->line, {{"defaultvalue", *value}}};
+    read_value(one, entry->second);
+  }
+}
+
+void Reader::read_stray_sub(DeviceObjectId id, const IniSection& section) {
+  if (file_.objects.contains(id)) return;
+  ini_.slip(section.line, "[" + section.name + "] has no section of its index; read all the same");
+  read_object(id, section);
+}
+
+void Reader::read_object(DeviceObjectId id, const IniSection& section) {
+  DeviceObject object;
+  object.line = section.line;
+  if (const IniValue* name = section.find("parametername")) object.name = name->text;
+  if (!read_type(section, object)) return;
+  read_access(section, object);
+  object.mappable = number(section, "pdomapping").value_or(0) != 0;
+  object.low = read_limit(section, "lowlimit", object);
+  object.high = read_limit(section, "highlimit", object);
+  if (object.low && object.high && *object.low > *object.high) {
+    ini_.slip(section.line, "[" + section.name + "] LowLimit is above HighLimit; both are ignored");
+    object.low.reset();
+    object.high.reset();
+  }
+  read_value(section, object);
+  add(id, std::move(object));
+}
+
+bool Reader::read_type(const IniSection& section, DeviceObject& object) {
+  const auto type = number(section, "datatype");
+  if (!type) {
+    ini_.slip(section.line, "[" + section.name + "] lacks DataType; taken as missing");
+    return false;
+  }
+  if (*type < 1 || *type > 0xFFFF) {
+    ini_.refuse(
+        section.find("datatype")->line,
+        "[" + section.name + "] DataType = " + std::to_string(*type) + ", must be in [1, 65535]");
+  }
+  object.type = static_cast<std::uint16_t>(*type);
+  return true;
+}
+
+void Reader::read_access(const IniSection& section, DeviceObject& object) {
+  using Access = DeviceObject::Access;
+  static constexpr std::array<std::pair<std::string_view, Access>, 6> kWords = {
+      {{"ro", Access::kReadOnly},
+       {"wo", Access::kWriteOnly},
+       {"rw", Access::kReadWrite},
+       {"rwr", Access::kReadWrite},
+       {"rww", Access::kReadWrite},
+       {"const", Access::kConstant}}};
+  const IniValue* value = section.find("accesstype");
+  if (value == nullptr || value->text.empty()) {
+    return ini_.slip(section.line, "[" + section.name + "] lacks AccessType; taken as rw");
+  }
+  const std::string word = lower_case(value->text);
+  const auto found = std::find_if(kWords.begin(), kWords.end(),
+                                  [&](const auto& each) { return each.first == word; });
+  if (found == kWords.end()) {
+    ini_.refuse(value->line, "[" + section.name + "] AccessType = " + value->text +
+                                 ", must be one of ro, wo, rw, rwr, rww, const");
+  }
+  object.access = found->second;
+}
+
+/// The value that a type's bits hold: FFFFh of an INTEGER16 is -1, and -1 of an UNSIGNED16 FFFFh.
+std::int64_t Reader::fitted(const DeviceObject& object, std::int64_t value, const IniValue& from) {
+  const unsigned bits = data_type_bits(object.type);
+  if (bits >= 64) return value;
+  const std::int64_t span = std::int64_t{1} << bits;
+  const bool is_signed = is_signed_type(object.type);
+  const std::int64_t low = is_signed ? -span / 2 : 0;
+  const std::int64_t high = low + span - 1;
+  if (value >= low && value <= high) return value;
+  const std::int64_t moved = value < low ? value + span : value - span;
+  if (moved < low || moved > high) {
+    ini_.refuse(from.line,
+                from.text + " does not fit the " + std::to_string(bits) + " bits of its data type");
+  }
+  return moved;
+}
+
+std::optional<std::int64_t> Reader::read_limit(const IniSection& section, const std::string& key,
+                                               const DeviceObject& object) {
+  if (!is_integer_type(object.type)) return std::nullopt;
+  const IniValue* value = section.find(key);
+  if (value == nullptr || value->text.empty() ||
+      lower_case(value->text).find("$nodeid") != std::string::npos) {
+    return std::nullopt;
+  }
+  return fitted(object, number(section, key).value(), *value);
+}
+
+void Reader::read_value(const IniSection& section, DeviceObject& object) {
+  const IniValue* value = section.find("parametervalue");
+  if (value == nullptr || value->text.empty()) value = section.find("defaultvalue");
+  if (value == nullptr || value->text.empty()) return;
+  object.text = value->text;
+  if (!is_integer_type(object.type)) return;
+  // $NODEID, $NODEID+0x180 or 0x180+$NODEID, with spaces and in any case.
+  std::string text;
+  for (const char c : lower_case(value->text)) {
+    if (c != ' ' && c != '\t') text += c;
+  }
+  constexpr std::string_view kNode = "$nodeid";
+  const std::size_t at = text.find(kNode);
+  object.adds_node = at != std::string::npos;
+  if (object.adds_node) {
+    text.erase(at, kNode.size());
+    if (text.starts_with('+')) text.erase(0, 1);
+    if (text.ends_with('+')) text.pop_back();
+    if (text.empty()) text = "0";
+  }
+  const auto parsed = parsed_number(text);
+  if (!parsed) {
+    ini_.refuse(value->line, "[" + section.name + "] value = " + value->text +
+                                 ", must be a number, or $NODEID and one");
+  }
+  object.value = fitted(object, *parsed, *value);
+}
+
+void Reader::add(DeviceObjectId id, DeviceObject object) {
+  if (file_.objects.size() >= kObjectsMax) {
+    ini_.refuse(object.line, "describes more than " + std::to_string(kObjectsMax) + " objects");
+  }
+  file_.objects[id] = std::move(object);
+}
+
+}  // namespace
+
+DeviceFile parse_device_file(const std::string& name, const std::string& text) {
+  return Reader(name, text).read();
+}
+
+}  // namespace tenon

@@ -1,0 +1,212 @@
+// Description files of devices, with the slips that vendors' files have: each is read, or refused
+// by file and line.
+
+#include "shared/eds/device_file.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "shared/config/files.h"
+#include "tests/support/places.h"
+#include "tests/support/refusal.h"
+
+namespace tenon {
+namespace {
+
+/// Sections behind a head without slips; line 1 of `sections` is line 9 of the file.
+DeviceFile parsed(const std::string& sections) {
+  return parse_device_file("a.eds",
+                           "[DeviceInfo]\nVendorName=someone\n[MandatoryObjects]\n"
+                           "SupportedObjects=0\n[OptionalObjects]\nSupportedObjects=0\n"
+                           "[ManufacturerObjects]\nSupportedObjects=0\n" +
+                               sections);
+}
+
+std::string refused(const std::string& sections) {
+  return tests::refusal([&] { (void)parsed(sections); });
+}
+
+const DeviceObject& object(const DeviceFile& file, std::uint16_t index, std::uint8_t sub = 0) {
+  const DeviceObject* found = file.find(index, sub);
+  EXPECT_NE(found, nullptr) << std::hex << index;
+  static const DeviceObject kNone;
+  return found != nullptr ? *found : kNone;
+}
+
+TEST(DeviceFile, ReadsAVariableWithAllThatItSays) {
+  const DeviceFile file = parsed(
+      "[6085]\nParameterName=Quick stop deceleration\nObjectType=0x7\nDataType=0x0007\n"
+      "AccessType=rw\nLowLimit=1\nHighLimit=0xFFFFFFFF\nDefaultValue=10000\nPDOMapping=0\n");
+  const DeviceObject& it = object(file, 0x6085);
+  EXPECT_EQ(it.name, "Quick stop deceleration");
+  EXPECT_EQ(it.type, 7);
+  EXPECT_EQ(it.access, DeviceObject::Access::kReadWrite);
+  EXPECT_EQ(it.low, 1);
+  EXPECT_EQ(it.high, 0xFFFFFFFF);
+  EXPECT_EQ(it.value, 10000);
+  EXPECT_FALSE(it.mappable);
+  EXPECT_EQ(it.line, 9);
+  EXPECT_TRUE(file.slips.empty()) << file.slips.front();
+  EXPECT_EQ(file.vendor, "someone");
+}
+
+TEST(DeviceFile, ReadsRecordsByTheirSubIndices) {
+  const DeviceFile file = parsed(
+      "[60C2]\nObjectType=9\nSubNumber=2\n"
+      "[60C2sub0]\nDataType=5\nAccessType=const\nDefaultValue=1\n"
+      "[60C2sub1]\nDataType=5\nAccessType=rw\nDefaultValue=8\n");
+  EXPECT_EQ(object(file, 0x60C2, 0).access, DeviceObject::Access::kConstant);
+  EXPECT_EQ(object(file, 0x60C2, 1).value, 8);
+  EXPECT_EQ(file.find(0x60C2, 2), nullptr);
+  EXPECT_TRUE(file.has_index(0x60C2));
+  EXPECT_FALSE(file.has_index(0x60C1));
+}
+
+TEST(DeviceFile, AMissingOrEmptyDefaultIsNone) {
+  const DeviceFile file = parsed(
+      "[6064]\nDataType=4\nAccessType=ro\n[6065]\nDataType=7\nAccessType=rw\nDefaultValue=\n");
+  EXPECT_FALSE(object(file, 0x6064).value);
+  EXPECT_FALSE(object(file, 0x6065).value);
+}
+
+TEST(DeviceFile, ReadsTheNodeInEveryForm) {
+  int at = 0;
+  for (const char* text : {"$NODEID+0x180", "0x180+$NODEID", "$NodeId + 0x180", "0X180 +$nodeid"}) {
+    const DeviceFile file =
+        parsed("[1800]\nDataType=7\nAccessType=rw\nDefaultValue=" + std::string(text) + "\n");
+    EXPECT_TRUE(object(file, 0x1800).adds_node) << text;
+    EXPECT_EQ(object(file, 0x1800).value, 0x180) << text;
+    ++at;
+  }
+  EXPECT_EQ(at, 4);
+  const DeviceFile alone = parsed("[2000]\nDataType=5\nAccessType=rw\nDefaultValue=$NODEID\n");
+  EXPECT_EQ(object(alone, 0x2000).value, 0);
+  EXPECT_TRUE(object(alone, 0x2000).adds_node);
+  EXPECT_EQ(refused("[1800]\nDataType=7\nAccessType=rw\nDefaultValue=$NODEID*2\n"),
+            "a.eds:12: [1800] value = $NODEID*2, must be a number, or $NODEID and one");
+}
+
+TEST(DeviceFile, TakesHexAndNamesInAnyCase) {
+  const DeviceFile file = parsed(
+      "[60c1]\nobjecttype=0X9\nSUBNUMBER=1\n[60C1SUB01]\nDATATYPE=0X0004\nACCESSTYPE=RWW\n"
+      "DEFAULTVALUE=0Xff\npdomapping=1\n");
+  EXPECT_EQ(object(file, 0x60C1, 1).value, 0xFF);
+  EXPECT_TRUE(object(file, 0x60C1, 1).mappable);
+}
+
+TEST(DeviceFile, TakesBitsForWhatTheyAreInTheirType) {
+  const DeviceFile file = parsed(
+      "[607D]\nDataType=4\nAccessType=rw\nLowLimit=0x80000000\nHighLimit=0x7FFFFFFF\n"
+      "DefaultValue=0xFFFFFFFF\n[6072]\nDataType=6\nAccessType=rw\nDefaultValue=-1\n");
+  EXPECT_EQ(object(file, 0x607D).low, -2147483648LL);
+  EXPECT_EQ(object(file, 0x607D).value, -1);
+  EXPECT_EQ(object(file, 0x6072).value, 0xFFFF);
+  EXPECT_EQ(refused("[6072]\nDataType=6\nAccessType=rw\nDefaultValue=0x10000000\n"),
+            "a.eds:12: 0x10000000 does not fit the 16 bits of its data type");
+}
+
+TEST(DeviceFile, TakesOctalAsItsStandardDoes) {
+  EXPECT_EQ(object(parsed("[2000]\nDataType=5\nAccessType=rw\nDefaultValue=010\n"), 0x2000).value,
+            8);
+  EXPECT_EQ(object(parsed("[2000]\nDataType=5\nAccessType=rw\nDefaultValue=08\n"), 0x2000).value,
+            8);
+}
+
+TEST(DeviceFile, UnfoldsCompactSubObjects) {
+  const DeviceFile file = parsed(
+      "[1003]\nParameterName=Errors\nObjectType=8\nDataType=7\nAccessType=ro\nCompactSubObj=3\n"
+      "[1003Value]\nNrOfEntries=1\n2=0x10\n");
+  EXPECT_EQ(object(file, 0x1003, 0).value, 3);
+  EXPECT_EQ(object(file, 0x1003, 0).type, 5);
+  EXPECT_FALSE(object(file, 0x1003, 1).value);
+  EXPECT_EQ(object(file, 0x1003, 2).value, 0x10);
+  EXPECT_EQ(object(file, 0x1003, 3).access, DeviceObject::Access::kReadOnly);
+  EXPECT_EQ(file.find(0x1003, 4), nullptr);
+  EXPECT_EQ(refused("[1003]\nObjectType=8\nDataType=7\nAccessType=ro\nCompactSubObj=255\n"),
+            "a.eds:13: [1003] CompactSubObj = 255, must be in [0, 254]");
+}
+
+TEST(DeviceFile, DoubleSectionsThatAgreeAreOneAndSaid) {
+  const DeviceFile file =
+      parsed("[6064]\nDataType=4\nAccessType=ro\n[6064]\nDataType=4\nPDOMapping=1\n");
+  EXPECT_TRUE(object(file, 0x6064).mappable);
+  ASSERT_EQ(file.slips.size(), 1u);
+  EXPECT_EQ(file.slips[0],
+            "a.eds:12: section [6064] stands in line 9 already; both are read as one");
+}
+
+TEST(DeviceFile, DoublesThatContradictEachOtherAreRefused) {
+  EXPECT_EQ(refused("[6064]\nDataType=4\nAccessType=ro\n[6064]\nDataType=7\n"),
+            "a.eds:13: [6064] datatype = 7 contradicts line 10, which says 4; remove one of them");
+}
+
+TEST(DeviceFile, WhatAListNamesAndNobodyDescribesIsMissingAndSaid) {
+  const DeviceFile file = parse_device_file(
+      "a.eds", "[OptionalObjects]\n1=0x6007\n2=0x6064\n[6064]\nDataType=4\nAccessType=ro\n");
+  EXPECT_EQ(file.find(0x6007, 0), nullptr);
+  const auto said = [&](const std::string& line) {
+    return std::find(file.slips.begin(), file.slips.end(), line) != file.slips.end();
+  };
+  EXPECT_TRUE(
+      said("a.eds:2: [OptionalObjects] lists 0x6007, which no section describes; taken as "
+           "missing"));
+  EXPECT_TRUE(said("a.eds:1: has no section [DeviceInfo]"));
+}
+
+TEST(DeviceFile, CountsSubIndicesThatAreThere) {
+  const DeviceFile file = parsed(
+      "[1600]\nObjectType=9\nSubNumber=9\n[1600sub0]\nDataType=5\nAccessType=rw\nDefaultValue=1\n"
+      "[1600sub1]\nDataType=7\nAccessType=rw\n");
+  EXPECT_NE(file.find(0x1600, 1), nullptr);
+  ASSERT_EQ(file.slips.size(), 1u);
+  EXPECT_EQ(file.slips[0],
+            "a.eds:9: [1600] SubNumber = 9, but 2 sub-indices are described; those are taken");
+}
+
+TEST(DeviceFile, MissingTypeOrAccessIsSaid) {
+  const DeviceFile file = parsed("[2000]\nAccessType=rw\n[2001]\nDataType=5\n");
+  EXPECT_EQ(file.find(0x2000, 0), nullptr);
+  EXPECT_EQ(object(file, 0x2001).access, DeviceObject::Access::kReadWrite);
+  ASSERT_EQ(file.slips.size(), 2u);
+  EXPECT_EQ(file.slips[0], "a.eds:9: [2000] lacks DataType; taken as missing");
+  EXPECT_EQ(file.slips[1], "a.eds:11: [2001] lacks AccessType; taken as rw");
+}
+
+TEST(DeviceFile, OtherSlipsAreRefusedByFileAndLine) {
+  EXPECT_EQ(refused("[2000]\nDataType=five\nAccessType=rw\n"),
+            "a.eds:10: [2000] datatype = five, must be a number such as 8, 0x6040 or 010");
+  EXPECT_EQ(refused("[2000]\nDataType=5\nAccessType=both\n"),
+            "a.eds:11: [2000] AccessType = both, must be one of ro, wo, rw, rwr, rww, const");
+  EXPECT_EQ(refused("[2000\nDataType=5\n"), "a.eds:9: [2000 lacks its ]");
+  EXPECT_EQ(refused(""), "a.eds:1: describes no object; is it an EDS or DCF file?");
+}
+
+TEST(DeviceFile, TakesAnyEndOfLineCommentsAndAByteOrderMark) {
+  const DeviceFile file = parse_device_file(
+      "a.eds",
+      "\xEF\xBB\xBF; a comment\r\n[6064]\r\nDataType=0x4\r\rAccessType = ro \n# another\n");
+  EXPECT_EQ(object(file, 0x6064).access, DeviceObject::Access::kReadOnly);
+}
+
+TEST(DeviceFile, ADcfHasItsNodeAndItsOwnValues) {
+  const DeviceFile file = parsed(
+      "[DeviceComissioning]\nNodeID=5\n[6065]\nDataType=7\nAccessType=rw\nDefaultValue=1\n"
+      "ParameterValue=2\n");
+  EXPECT_EQ(file.node, 5);
+  EXPECT_EQ(object(file, 0x6065).value, 2);
+  EXPECT_EQ(refused("[DeviceCommissioning]\nNodeID=0\n[6065]\nDataType=7\n"),
+            "a.eds:9: NodeID = 0, must be in [1, 127]");
+}
+
+TEST(DeviceFile, TheTwinsOfTheTestsHaveNoSlip) {
+  for (const char* name : {"tests/twins/lwa4p.eds", "tests/twins/epos4.eds"}) {
+    const DeviceFile file = parse_device_file(name, config::read_file(tests::in_tree(name)));
+    EXPECT_TRUE(file.slips.empty()) << file.slips.front();
+    EXPECT_EQ(object(file, 0x6041).access, DeviceObject::Access::kReadOnly);
+  }
+}
+
+}  // namespace
+}  // namespace tenon
