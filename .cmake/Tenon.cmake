@@ -57,7 +57,7 @@ set(TENON_MAY_USE_hw_arm        shared hw_canopen hw_cia402)
 set(TENON_MAY_USE_hw_load       shared hw_arm)
 set(TENON_MAY_USE_sim_physics    shared ODE::ODE)
 # The arm's links and joints are bodies of the same engine.
-set(TENON_MAY_USE_sim_cell       shared sim_physics ODE::ODE nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_sim_cell       shared shared_eds sim_physics ODE::ODE nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_sim_evaluation shared shared_system shared_drawing sim_cell
                                  nlohmann_json::nlohmann_json)
 # The evaluation runs executor and virtual arm in lockstep inside one process.
@@ -72,7 +72,7 @@ set(TENON_MAY_USE_tenon-inspect  planner planner_report sim_physics shared_confi
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
                                  executor_loop executor_telemetry hw_can hw_arm hw_load shared_config)
 set(TENON_MAY_USE_tenon-monitor  executor_telemetry shared_config LCM::lcm)
-set(TENON_MAY_USE_tenon-sim      sim_cell hw_can shared_config)
+set(TENON_MAY_USE_tenon-sim      sim_cell hw_can shared_eds shared_config)
 set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)
 set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 shared_config)
 

@@ -6,12 +6,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hw/can/open_bus.h"
@@ -19,8 +21,10 @@
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
+#include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/signals.h"
+#include "shared/eds/device_file.h"
 #include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
 #include "sim/cell/devices/robot_devices.h"
@@ -50,6 +54,7 @@ struct CommandLine {
   std::string offset;
   std::string experiment;
   std::vector<std::string> faults;
+  std::vector<std::string> twins;
   std::string eds;
   std::string json;
   std::string ready_file;
@@ -114,6 +119,24 @@ void write_data_sheets(const std::filesystem::path& folder, const Robot& robot) 
   for (const sim::EdsFile& file : sim::eds_files(robot)) write_file(folder / file.name, file.text);
 }
 
+/// NODE=FILE.
+std::pair<std::uint8_t, DeviceFile> read_twin(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  unsigned node = 0;
+  const char* end = text.data() + std::min(equals, text.size());
+  const auto [rest, error] = std::from_chars(text.data(), end, node);
+  if (equals == std::string::npos || error != std::errc{} || rest != end || node < 1 ||
+      node > 127) {
+    throw InputError("--twin " + text + ": must be NODE=FILE, NODE in [1, 127]");
+  }
+  const std::string file = text.substr(equals + 1);
+  DeviceFile device = parse_device_file(file, config::read_file(file));
+  for (const std::string& slip : device.slips) {
+    std::fprintf(stderr, "tenon-sim: %s\n", slip.c_str());
+  }
+  return {static_cast<std::uint8_t>(node), std::move(device)};
+}
+
 int simulate(const CommandLine& line) {
   check_apart({{"--json", line.json}, {"--ready-file", line.ready_file}},
               {{"--cell", line.cell}, {"--task", line.task}, {"--experiment", line.experiment}});
@@ -133,6 +156,11 @@ int simulate(const CommandLine& line) {
     options.world = sim::draw_world(load_experiment(line.experiment), task, *line.seed);
   }
   for (const std::string& fault : line.faults) options.faults.push_back(sim::parse_fault(fault));
+  for (const std::string& twin : line.twins) {
+    if (!options.twins.insert(read_twin(twin)).second) {
+      throw InputError("--twin " + twin + ": this node has a twin already");
+    }
+  }
   if (!line.json.empty()) check_writable(line.json);
   sim::FaultPhases phases;
   options.phases = &phases;
@@ -201,6 +229,10 @@ int parse_and_simulate(int argc, char** argv) {
                  "--fault help lists them")
       ->allow_extra_args(false)
       ->each(answer_help);
+  app.add_option("--twin", line.twins,
+                 "NODE=FILE: that joint's drive answers with the objects, limits and access types "
+                 "of an EDS or DCF file; may be repeated")
+      ->allow_extra_args(false);
   app.add_option("--eds", line.eds, "folder for an EDS file of every node, written at the start")
       ->check(CLI::ExistingDirectory);
   app.add_option("--json", line.json, "file for the truth, written whole at the end");

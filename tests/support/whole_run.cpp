@@ -48,6 +48,7 @@ sim::VirtualCell::Options world_of(const WholeRun::Options& options) {
   world.faults = options.faults;
   world.world = options.world;
   world.joints = options.joints;
+  world.twins = options.twins;
   return world;
 }
 

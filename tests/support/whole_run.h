@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,7 +37,8 @@ class WholeRun {
     Vector6 offset = Vector6::Zero();
     executor::Controller::Parameters controller;
     double bit_error_rate = 0.0;
-    std::vector<sim::Fault> faults;  ///< of the bus and of devices
+    std::vector<sim::Fault> faults;              ///< of the bus and of devices
+    std::map<std::uint8_t, DeviceFile> twins{};  ///< by node
     sim::WorldDraw world;
     std::optional<JointVector> joints;  ///< where the arm stands; unset: at the start
     sim::Link* link = nullptr;          ///< in place of the virtual bus; must outlive the run

@@ -59,6 +59,14 @@ ObjectEntry& ObjectDictionary::add(ObjectId id, ObjectEntry entry) {
   return added->second;
 }
 
+void ObjectDictionary::hide(ObjectId id) {
+  constexpr ObjectId kBeyondTheBus = 0x80000000;
+  auto handle = entries_.extract(id);
+  if (handle.empty()) return;
+  handle.key() = id | kBeyondTheBus;
+  entries_.insert(std::move(handle));
+}
+
 void ObjectDictionary::describe(std::uint16_t index, Description description) {
   descriptions_[index] = std::move(description);
 }

@@ -66,6 +66,8 @@ class ObjectDictionary {
 
   /// @return the entry, for the device's own access without a search
   ObjectEntry& add(ObjectId id, ObjectEntry entry);
+  /// Takes an entry off the bus: nobody finds it any more, and those who hold it keep it.
+  void hide(ObjectId id);
   /// Names an index that has sub-indices. What is not described is a variable.
   void describe(std::uint16_t index, Description description);
 

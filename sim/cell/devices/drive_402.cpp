@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "shared/base/time_units.h"
+#include "sim/cell/canopen/twin.h"
 
 namespace tenon::sim {
 namespace {
@@ -61,6 +62,14 @@ Drive402::Drive402(const Parameters& parameters)
                 .on_mode = [this](std::int64_t value) { return on_mode(value); }}),
       motion_(nanoseconds(parameters.brake_release_s), nanoseconds(parameters.brake_engage_s)),
       temperature_degC_(parameters.ambient_degC) {}
+
+void Drive402::become_twin(const DeviceFile& file) {
+  make_twin(node_.dictionary(), file, node_.node());
+  if (file.find(canopen::kAbortConnectionOption, 0) == nullptr) {
+    set_default(objects_.connection_option, kConnectionIgnored);
+  }
+  objects_.mode_display.value = 0;
+}
 
 // -- Calls from the node ------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "shared/eds/device_file.h"
 #include "sim/cell/canopen/slave_node.h"
 #include "sim/cell/devices/active_faults.h"
 #include "sim/cell/devices/drive_motion.h"
@@ -41,6 +42,11 @@ class Drive402 final : private NodeApplication {
   };
 
   explicit Drive402(const Parameters& parameters);
+
+  /// Before power-on: answers from now on with the objects, limits and access types of a device's
+  /// own description, and does without what that lacks. Without 6007h it does nothing about a lost
+  /// master.
+  void become_twin(const DeviceFile& file);
 
   [[nodiscard]] SlaveNode& node() { return node_; }
   [[nodiscard]] const SlaveNode& node() const { return node_; }

@@ -91,7 +91,12 @@ class VirtualCell::Impl {
         sensor_(cell_.robot.sensor, options.seed, sensor_imperfections(options.world)),
         delay_(cell.robot.joints.size(), delay_steps(options)),
         cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us) {
-    for (const Joint& joint : cell.robot.joints) drives_.emplace_back(drive_parameters_of(joint));
+    for (const Joint& joint : cell.robot.joints) {
+      Drive402& drive = drives_.emplace_back(drive_parameters_of(joint));
+      const auto twin = options_.twins.find(joint.node);
+      if (twin != options_.twins.end()) drive.become_twin(twin->second);
+    }
+    check_twins();
     if (arm_.scene().overlap_m() > kOverlapMax_m) {
       throw InputError(
           "task " + task.name + ": at start \"" + start_name_ + "\" the part stands " +
@@ -107,6 +112,7 @@ class VirtualCell::Impl {
   [[nodiscard]] bool at_standstill() const;
 
  private:
+  void check_twins() const;
   void power_on(std::int64_t now_ns);
   void advance_physics(std::int64_t now_ns);
   void physics_step();
@@ -147,6 +153,18 @@ class VirtualCell::Impl {
 
   CellWatch watch_{cell_.robot, drives_, arm_, phases_};
 };
+
+void VirtualCell::Impl::check_twins() const {
+  for (const auto& [node, file] : options_.twins) {
+    const bool of_joint =
+        std::any_of(drives_.begin(), drives_.end(),
+                    [node = node](const Drive402& drive) { return drive.node().node() == node; });
+    if (!of_joint) {
+      throw InputError("twin " + file.name + ": node " + std::to_string(node) +
+                       " is no joint of robot " + cell_.robot.name);
+    }
+  }
+}
 
 void VirtualCell::Impl::power_on(std::int64_t now_ns) {
   on_ = true;

@@ -11,12 +11,14 @@
 // thread. ODE counts its complaints per thread, so the cell must stay on the thread that made it.
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "shared/cell/cell.h"
+#include "shared/eds/device_file.h"
 #include "shared/ports/arm.h"
 #include "shared/ports/can_bus.h"
 #include "shared/task/task.h"
@@ -37,6 +39,8 @@ class VirtualCell {
     std::vector<Fault> faults;          ///< those of devices are carried out, those of the bus not
     FaultPhases* phases = nullptr;      ///< noted there too, for the bus; must outlive the cell
     std::optional<JointVector> joints;  ///< unset: tool at the start in the nominal task frame
+    /// By node: what that joint's drive answers like.
+    std::map<std::uint8_t, DeviceFile> twins{};
     std::int64_t physics_step_ns = 500'000;
     /// A clock of the caller's, read before and after each step of physics, for its cost alone.
     std::int64_t (*stopwatch_ns)() = nullptr;

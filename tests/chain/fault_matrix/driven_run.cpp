@@ -22,11 +22,14 @@ constexpr std::int64_t kCyclesMost = 15'000;
 
 }  // namespace
 
-Ground::Ground(const std::string& cell_name)
+Ground::Ground(const std::string& cell_name, const std::string& twin, const std::string& plan_of)
     : cell(shipped_cell(cell_name)),
-      planned(planned_box(cell, "1")),
+      twins(twins_of(cell.robot, twin)),
+      planned(planned_box(plan_of.empty() ? cell : shipped_cell(plan_of), "1")),
       dry_run(executor::dry_run(planned.plan, cell)) {
-  WholeRun run(cell, planned.task, planned.plan, with_faults({}));
+  WholeRun::Options run_options = with_faults({});
+  run_options.twins = twins;
+  WholeRun run(cell, planned.task, planned.plan, run_options);
   const auto moment = [&] {
     const sim::Truth truth = run.result().truth;
     Moment now;
@@ -128,6 +131,7 @@ WholeRun::Options DrivenRun::options(const Ground& ground) {
   }
   WholeRun::Options options = with_faults(specs);
   options.controller.masked = strike_.mask;
+  options.twins = ground.twins;
   options.seed = strike_.seed;
   options.offset = strike_.offset;
   options.joints = ground.start;

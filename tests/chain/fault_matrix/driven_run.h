@@ -3,22 +3,28 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 
 #include "executor/dry_run/dry_run.h"
 #include "executor/faults/fault_table.h"
+#include "shared/eds/device_file.h"
 #include "sim/cell/faults/fault_phases.h"
 #include "tests/chain/fault_matrix/fault_kind.h"
 #include "tests/chain/fault_matrix/fault_watch.h"
 #include "tests/support/planned.h"
 #include "tests/support/rest_watch.h"
+#include "tests/support/twins.h"
 #include "tests/support/whole_run.h"
 
 namespace tenon::tests {
 
 /// A robot, its plan, and where a run without faults is when a phase begins and a little later.
 struct Ground {
-  explicit Ground(const std::string& cell_name);
+  /// @param twin what every drive answers like, a file of tests/twins; empty: by the book
+  /// @param plan_of the cell of the same mechanics that the plan was made for; empty: this one
+  explicit Ground(const std::string& cell_name, const std::string& twin = {},
+                  const std::string& plan_of = {});
 
   /// What a stop on force may come to: the bound, and what the stiffest contact adds at the plan's
   /// greatest speed until it is noticed and acted on.
@@ -29,6 +35,7 @@ struct Ground {
     Vector3 tool_m = Vector3::Zero();  ///< task frame, of the environment as it stands
   };
   Cell cell;
+  std::map<std::uint8_t, DeviceFile> twins;
   Planned planned;
   executor::DryRun dry_run;
   JointVector start{};

@@ -1,0 +1,128 @@
+// Shipped robots on drives in the likeness of those that they name: bring-up, a whole plan, every
+// fault. What such a drive cannot be told is what the master says of it at the start.
+
+#include "tests/support/twins.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <set>
+#include <string>
+
+#include "hw/arm/describe_fault.h"
+#include "hw/arm/drive_settings.h"
+#include "tests/chain/fault_matrix/fault_cell.h"
+#include "tests/chain/fault_matrix/fault_kind.h"
+#include "tests/support/planned.h"
+#include "tests/support/rest_watch.h"
+#include "tests/support/whole_run.h"
+
+namespace tenon::tests {
+namespace {
+
+using executor::EndReason;
+
+struct Twin {
+  const char* cell;     ///< and of the file of tests/twins
+  const char* plan_of;  ///< the cell that its plan was made for
+};
+
+/// A run of start 1 of the box task, with drives as the file of the cell's name says.
+struct TwinRun {
+  explicit TwinRun(const Twin& twin, bool as_twins = true)
+      : cell(shipped_cell(twin.cell)), planned(planned_box(shipped_cell(twin.plan_of), "1")) {
+    WholeRun::Options options;
+    options.start = "1";
+    options.offset = (Vector6() << 0.01, -0.01, 0.0, 0.0, 0.0, 0.0).finished();
+    if (as_twins) options.twins = twins_of(cell.robot, twin.cell);
+    run = std::make_unique<WholeRun>(cell, planned.task, planned.plan, options);
+  }
+  [[nodiscard]] std::string fault() const { return hw::describe(run->arm().fault(), cell.robot); }
+
+  Cell cell;
+  Planned planned;
+  std::unique_ptr<WholeRun> run;
+};
+
+TEST(Twins, ARobotOfDrivesByTheBookIsRefusedByTheRealOnes) {
+  TwinRun twin({"epos4", "gantry3"});
+  for (Joint& joint : twin.cell.robot.joints) joint.drive = DriveProfile{};
+  WholeRun::Options options;
+  options.twins = twins_of(twin.cell.robot, "epos4");
+  WholeRun run(twin.cell, twin.planned.task, twin.planned.plan, options);
+  EXPECT_FALSE(run.prepare());
+  EXPECT_EQ(hw::describe(run.arm().fault(), twin.cell.robot),
+            "node 1 (x): refused 6066h:0 = 0xA: value too high (abort 0x06090031); check the "
+            "device's manual and firmware, and the profile of its drive");
+}
+
+TEST(Twins, TheLwaComesUpOnItsOwnDrives) {
+  TwinRun twin({"lwa4p", "csp6"});
+  ASSERT_TRUE(twin.run->prepare()) << twin.fault();
+  EXPECT_FALSE(hw::drive_remarks(twin.cell.robot).empty());
+}
+
+class TwinPlan : public ::testing::TestWithParam<Twin> {};
+
+TEST_P(TwinPlan, GoesThroughAWholePlanAndIsLeftInItsBrakes) {
+  TwinRun twin(GetParam());
+  const WholeRun::Result result = twin.run->run();
+  EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
+  EXPECT_LT(result.truth.error_norm_m, twin.planned.task.goal_tolerance_m);
+  RestWatch rest(twin.cell.robot);
+  for (int i = 0; i < 100; ++i) {
+    twin.run->leave_alone(0.01);
+    rest.look(twin.run->result().truth);
+  }
+  EXPECT_EQ(rest.complaints(), "");
+}
+
+TEST_P(TwinPlan, AWarningOfADriveEndsNothing) {
+  TwinRun twin(GetParam());
+  CanBus& drive = twin.run->bus().attach();
+  ASSERT_TRUE(twin.run->prepare()) << twin.fault();
+  const std::uint8_t node = twin.cell.robot.joints[1].node;
+  for (int i = 0; i < 2000 && twin.run->cycle(); ++i) {
+    if (i % 500 == 499) (void)drive.send({0x80u + node, false, false, 8, {0x10, 0x42, 0x08}});
+  }
+  EXPECT_EQ(twin.run->arm().fault().kind, ArmFaultKind::kNone) << twin.fault();
+  EXPECT_GE(twin.run->arm().counters().emergencies, 3u);
+}
+
+class TwinFaults : public ::testing::TestWithParam<Twin> {};
+
+// What ends only by the drives' own reaction to a lost master: the executor is gone, or cannot
+// reach them.
+bool needs_the_drives(const FaultKind& kind) {
+  static const std::set<std::string> kNames = {"SIGKILL", "SIGSTOP",        "queue full",
+                                               "bus-off", "interface down", "RPDOs lost"};
+  return kNames.contains(kind.name);
+}
+
+TEST_P(TwinFaults, EveryFaultThatItCanHaveIsRiddenOutOrStoppedByName) {
+  const Ground ground(GetParam().cell, GetParam().cell, GetParam().plan_of);
+  const bool alone =
+      ground.cell.robot.joints[0].drive.object(DriveObject::kConnectionOption).presence ==
+      Presence::kAbsent;
+  for (const FaultKind& kind : fault_kinds()) {
+    const Outcome outcome = run_cell(ground, kind, sim::FaultPhase::kFree);
+    std::printf("%s, %s: %s\n", GetParam().cell, kind.name, outcome.text.c_str());
+    if (alone && needs_the_drives(kind)) {
+      EXPECT_NE(outcome.complaint.find("left as"), std::string::npos)
+          << kind.name << ": stays powered, as is said at the start";
+      continue;
+    }
+    EXPECT_EQ(outcome.complaint, "") << kind.name;
+  }
+}
+
+std::string twin_name(const ::testing::TestParamInfo<Twin>& info) { return info.param.cell; }
+
+INSTANTIATE_TEST_SUITE_P(Tree, TwinPlan, ::testing::Values(Twin{"epos4", "gantry3"}), twin_name);
+INSTANTIATE_TEST_SUITE_P(Full, TwinPlan, ::testing::Values(Twin{"lwa4p", "lwa4p"}), twin_name);
+INSTANTIATE_TEST_SUITE_P(Full, TwinFaults,
+                         ::testing::Values(Twin{"epos4", "gantry3"}, Twin{"lwa4p", "lwa4p"}),
+                         twin_name);
+
+}  // namespace
+}  // namespace tenon::tests
