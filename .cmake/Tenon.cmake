@@ -18,7 +18,7 @@ set(TENON_LIBRARIES shared shared_system shared_drawing shared_eds shared_config
     planner planner_belief planner_search planner_judge planner_report
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
-    hw_can hw_canopen hw_cia402 hw_arm hw_load
+    hw_can hw_canopen hw_cia402 hw_arm hw_load hw_check
     sim_physics sim_cell sim_evaluation sim_evaluation_chain)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
@@ -55,6 +55,7 @@ set(TENON_MAY_USE_hw_canopen    shared)
 set(TENON_MAY_USE_hw_cia402     shared)
 set(TENON_MAY_USE_hw_arm        shared hw_canopen hw_cia402)
 set(TENON_MAY_USE_hw_load       shared hw_arm)
+set(TENON_MAY_USE_hw_check      shared shared_eds hw_canopen hw_arm hw_load)
 set(TENON_MAY_USE_sim_physics    shared ODE::ODE)
 # The arm's links and joints are bodies of the same engine.
 set(TENON_MAY_USE_sim_cell       shared shared_eds sim_physics ODE::ODE nlohmann_json::nlohmann_json)
@@ -74,7 +75,7 @@ set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identificati
 set(TENON_MAY_USE_tenon-monitor  executor_telemetry shared_config LCM::lcm)
 set(TENON_MAY_USE_tenon-sim      sim_cell hw_can shared_eds shared_config)
 set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)
-set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 shared_config)
+set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 hw_check shared_eds shared_config)
 
 # Everything under tests/ may use any library, and never a main.
 set(TENON_MAY_USE_tests ${TENON_LIBRARIES} test_support Eigen3::Eigen yaml-cpp ODE::ODE LCM::lcm

@@ -13,8 +13,11 @@
 #include "hw/can/open_bus.h"
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/object_value.h"
+#include "hw/canopen/sdo.h"
 #include "hw/canopen/sdo_client.h"
 #include "hw/cia402/drive_state.h"
+#include "hw/main_can_check.h"
+#include "shared/base/bytes.h"
 #include "shared/base/error.h"
 #include "shared/canopen/constants.h"
 #include "shared/config/command_line.h"
@@ -25,7 +28,8 @@ namespace {
 
 using canopen::SdoClient;
 
-constexpr std::int64_t kScanTimeout_ns = 20'000'000;
+constexpr std::int64_t kScan_ns = 1'000'000'000;   // after the last request
+constexpr std::int64_t kScanPause_ns = 2'000'000;  // so that no transmit queue overflows
 constexpr std::int64_t kTransferTimeout_ns = 500'000'000;
 constexpr std::int64_t kListen_ns = 1'000'000'000;
 
@@ -67,25 +71,66 @@ int report_failure(const SdoClient& client, const canopen::SdoAddress& address) 
   } else {
     std::fprintf(stderr, "node %u: %04Xh:%u refused: %s (abort 0x%08X)\n",
                  static_cast<unsigned>(address.node), static_cast<unsigned>(address.index),
-                 static_cast<unsigned>(address.sub), reason != nullptr ? reason : "not listed",
+                 static_cast<unsigned>(address.sub),
+                 reason != nullptr ? reason : "for a reason of its maker's own",
                  client.abort_code());
   }
   return 1;
 }
 
+/// Who answered a request of 1000h, and how often.
+struct Answers {
+  std::array<unsigned, 128> count{};
+  std::array<std::uint32_t, 128> device_type{};
+
+  void take(const CanFrame& frame) {
+    const std::uint32_t base = tenon::canopen::kSdoResponse;
+    if (frame.extended || frame.remote || frame.length != 8 || frame.id <= base ||
+        frame.id > base + 127) {
+      return;
+    }
+    const std::uint32_t node = frame.id - base;
+    ++count[node];
+    device_type[node] = load_le<std::uint32_t>(std::span(frame.data).subspan(4));
+  }
+};
+
+void listen(CanBus& bus, std::int64_t until_ns, Answers& answers) {
+  while (monotonic_now_ns() < until_ns) {
+    bus.wait(1'000'000);
+    ReceivedFrame received;
+    while (bus.receive(received)) answers.take(received.frame);
+  }
+}
+
+/// All are asked, then all are heard out, however long each takes.
 int scan(CanBus& bus) {
-  int found = 0;
+  Answers answers;
   for (unsigned id = 1; id <= 127; ++id) {
-    const auto node = static_cast<std::uint8_t>(id);
-    const auto type = read_number(bus, {node, tenon::canopen::kDeviceType, 0}, kScanTimeout_ns);
-    if (!type) continue;
+    (void)bus.send(
+        canopen::sdo_upload({static_cast<std::uint8_t>(id), tenon::canopen::kDeviceType, 0}));
+    listen(bus, monotonic_now_ns() + kScanPause_ns, answers);
+  }
+  listen(bus, monotonic_now_ns() + kScan_ns, answers);
+  int found = 0;
+  bool doubled = false;
+  for (unsigned id = 1; id <= 127; ++id) {
+    if (answers.count[id] == 0) continue;
     ++found;
-    const auto vendor = read_number(bus, {node, tenon::canopen::kIdentity, 1}, kTransferTimeout_ns);
-    std::printf("node %3u  profile %u  device type 0x%08X  vendor 0x%08X\n", id, *type & 0xFFFFu,
-                *type, vendor.value_or(0));
+    const std::uint32_t type = answers.device_type[id];
+    const auto vendor = read_number(
+        bus, {static_cast<std::uint8_t>(id), tenon::canopen::kIdentity, 1}, kTransferTimeout_ns);
+    std::printf("node %3u  profile %u  device type 0x%08X  vendor 0x%08X\n", id, type & 0xFFFFu,
+                type, vendor.value_or(0));
+    if (answers.count[id] < 2) continue;
+    doubled = true;
+    std::fprintf(stderr,
+                 "node %u: %u devices answered to one request; give each its own node id (with one "
+                 "of them connected at a time)\n",
+                 id, answers.count[id]);
   }
   std::printf("%d node%s\n", found, found == 1 ? "" : "s");
-  return found > 0 ? 0 : 1;
+  return found > 0 && !doubled ? 0 : 1;
 }
 
 const char* nmt_text(std::uint8_t state) {
@@ -121,7 +166,7 @@ int state(CanBus& bus) {
     ++found;
     std::printf("node %3u  %s", id, nmt_text(*states[id]));
     const auto word = read_number(
-        bus, {static_cast<std::uint8_t>(id), tenon::canopen::kStatusword, 0}, kScanTimeout_ns);
+        bus, {static_cast<std::uint8_t>(id), tenon::canopen::kStatusword, 0}, kTransferTimeout_ns);
     if (word) {
       const auto status = static_cast<std::uint16_t>(*word);
       std::printf("  drive: %s (0x%04X)", cia402::to_string(cia402::decode_statusword(status)),
@@ -151,7 +196,15 @@ int write(CanBus& bus, const canopen::SdoAddress& address, std::span<const std::
   return client.state() == SdoClient::State::kDone ? 0 : report_failure(client, address);
 }
 
+/// The device keeps its settings from now on (1010h:1, "save").
+int store(CanBus& bus, std::uint8_t node) {
+  constexpr std::array<std::uint8_t, 4> kSave = {'s', 'a', 'v', 'e'};
+  return write(bus, {node, tenon::canopen::kStoreParameters, 1}, kSave);
+}
+
 struct Arguments {
+  std::string robot;
+  std::vector<std::string> eds;
   std::string uri;
   std::uint32_t bitrate_bps = 1'000'000;
   unsigned node = 0;
@@ -172,16 +225,28 @@ int run(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{
       "Looks at the nodes of a CAN bus, reads and writes their objects.\n"
-      "Example: tenon-can --can socketcan:can0 read 3 0x6041 0"};
+      "Example: tenon-can --can socketcan:can0 read 3 0x6041 0\n"
+      "         tenon-can check hw/robots/lwa4p/robot.yaml --eds joint.dcf"};
   app.set_version_flag("--version", TENON_VERSION);
-  app.add_option("--can", arguments.uri, "socketcan:IFACE, slcan:/dev/TTY or slcan://HOST:PORT")
-      ->required();
+  app.add_option("--can", arguments.uri,
+                 "socketcan:IFACE, slcan:/dev/TTY or slcan://HOST:PORT; "
+                 "needed by all but check");
   app.add_option("--bitrate", arguments.bitrate_bps,
                  "bit/s; set on slcan adapters, checked on SocketCAN")
       ->capture_default_str();
   app.require_subcommand(1);
   const auto* scan_command = app.add_subcommand("scan", "ask all 127 nodes who they are");
   const auto* state_command = app.add_subcommand("state", "listen for heartbeats for a second");
+  auto* store_command =
+      app.add_subcommand("store", "let a node keep its settings without power (1010h)");
+  store_command->add_option("NODE", arguments.node)->required()->check(CLI::Range(1, 127));
+  auto* check_command =
+      app.add_subcommand("check", "without a bus: what bring-up would do to a robot's drives");
+  check_command->add_option("ROBOT", arguments.robot, "robot.yaml")->required();
+  check_command
+      ->add_option("--eds", arguments.eds,
+                   "EDS or DCF of every joint's drive, or NODE=FILE; may be repeated")
+      ->allow_extra_args(false);
   auto* read_command = app.add_subcommand("read", "read an object");
   auto* write_command = app.add_subcommand("write", "write an object");
   for (auto* command : {read_command, write_command}) {
@@ -193,6 +258,8 @@ int run(int argc, char** argv) {
   write_command->add_option("VALUE", arguments.value)->required();
   parse(app, argc, argv);
 
+  if (check_command->parsed()) return check_robot_file(arguments.robot, arguments.eds);
+  if (arguments.uri.empty()) throw InputError("--can: is required; see tenon-can --help");
   // Everything that was typed is checked before anything is opened.
   const bool with_object = read_command->parsed() || write_command->parsed();
   const canopen::SdoAddress address = with_object ? arguments.address() : canopen::SdoAddress{};
@@ -201,6 +268,7 @@ int run(int argc, char** argv) {
                               : std::vector<std::uint8_t>{};
   const std::unique_ptr<CanBus> bus = open_bus(arguments.uri, arguments.bitrate_bps);
   if (scan_command->parsed()) return scan(*bus);
+  if (store_command->parsed()) return store(*bus, static_cast<std::uint8_t>(arguments.node));
   if (state_command->parsed()) return state(*bus);
   return read_command->parsed() ? read(*bus, address) : write(*bus, address, bytes);
 }

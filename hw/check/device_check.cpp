@@ -1,0 +1,279 @@
+#include "hw/check/device_check.h"
+
+#include <optional>
+
+#include "hw/arm/drive_settings.h"
+#include "hw/arm/node_settings.h"
+#include "hw/bus_load/bus_load.h"
+#include "shared/base/error.h"
+#include "shared/base/text.h"
+
+namespace tenon::hw {
+namespace {
+
+using canopen::ObjectSetting;
+using Action = ObjectSetting::Action;
+using Verdict = CheckLine::Verdict;
+
+std::string shown(std::uint32_t value) { return format("0x%X", value); }
+
+const char* access_text(DeviceObject::Access access) {
+  switch (access) {
+    case DeviceObject::Access::kReadOnly:
+      return "ro";
+    case DeviceObject::Access::kWriteOnly:
+      return "wo";
+    case DeviceObject::Access::kReadWrite:
+      return "rw";
+    case DeviceObject::Access::kConstant:
+      return "const";
+  }
+  return "";
+}
+
+bool is_written(Action action) {
+  return action == Action::kWrite || action == Action::kWriteOrTake ||
+         action == Action::kWriteIfOther;
+}
+
+/// A device as its file describes it, while bring-up goes through it.
+class Model {
+ public:
+  Model(const DeviceFile& file, std::uint8_t node) : file_(file), node_(node) {}
+
+  CheckLine run(const ObjectSetting& setting) {
+    CheckLine line{setting, "", Verdict::kGood};
+    if (setting.action == Action::kWriteIfOther && same_) {
+      line.device = "is so already, left alone";
+      comparing_ = false;
+      return line;
+    }
+    const DeviceObject* object = file_.find(setting.index, setting.sub);
+    if (object == nullptr) {
+      missing(line);
+    } else if (setting.action == Action::kCompare) {
+      compare(line, *object);
+    } else if (is_written(setting.action)) {
+      write(line, *object);
+    } else {
+      read(line, *object);
+    }
+    comparing_ = setting.action == Action::kCompare;
+    return line;
+  }
+
+ private:
+  void missing(CheckLine& line) {
+    const bool index = file_.has_index(line.setting.index);
+    line.device = index ? "has no such sub-index" : "has no such object";
+    if (line.setting.action == Action::kCompare) {
+      remember(line.setting.optional);
+    } else if (line.setting.optional) {
+      line.device += ", which its profile allows";
+    } else {
+      line.verdict = Verdict::kRefused;
+      line.device += index ? " (abort 0x06090011)" : " (abort 0x06020000)";
+    }
+  }
+
+  void compare(CheckLine& line, const DeviceObject& object) {
+    const auto held = value(line.setting, object);
+    line.device = describe(object) + (held ? ", holds " + shown(*held) : "");
+    remember(held && line.setting.matches(*held));
+  }
+
+  void write(CheckLine& line, const DeviceObject& object) {
+    line.device = describe(object);
+    const std::string refusal = why_refused(line.setting, object);
+    if (refusal.empty()) {
+      values_[line.setting.object()] = line.setting.value;
+      return;
+    }
+    line.device += ": " + refusal;
+    line.verdict = Verdict::kRefused;
+    if (line.setting.action != Action::kWriteOrTake) return;
+    const auto held = value(line.setting, object);
+    line.verdict = !held                           ? Verdict::kUnknown
+                   : line.setting.means_off(*held) ? Verdict::kRefused
+                                                   : Verdict::kOther;
+    if (held) line.device += "; keeps " + shown(*held);
+  }
+
+  void read(CheckLine& line, const DeviceObject& object) {
+    line.device = describe(object);
+    if (object.access == DeviceObject::Access::kWriteOnly) {
+      line.device += ": cannot be read (abort 0x06010001)";
+      line.verdict = Verdict::kRefused;
+      return;
+    }
+    // A display follows the device; a default says nothing of it.
+    if (line.setting.action == Action::kAwait || line.setting.action == Action::kRecord) return;
+    const auto held = value(line.setting, object);
+    if (!held) {
+      line.verdict = Verdict::kUnknown;
+      line.device += ", value not said";
+      return;
+    }
+    line.device += ", holds " + shown(*held);
+    if (line.setting.action == Action::kTake || line.setting.matches(*held)) return;
+    line.verdict = Verdict::kRefused;
+  }
+
+  [[nodiscard]] static std::string why_refused(const ObjectSetting& setting,
+                                               const DeviceObject& object) {
+    using Access = DeviceObject::Access;
+    if (object.access == Access::kReadOnly || object.access == Access::kConstant) {
+      return "cannot be written (abort 0x06010002)";
+    }
+    if (object.access == Access::kWriteOnly) return "cannot be read back (abort 0x06010001)";
+    const unsigned bits = data_type_bits(object.type);
+    if (bits != 8u * setting.size_bytes) {
+      return format("has %u bits where %u are written (abort 0x06070010)", bits,
+                    8u * setting.size_bytes);
+    }
+    const std::int64_t wanted = as_type(setting, object);
+    if (object.high && wanted > *object.high) {
+      return format("at most %lld (abort 0x06090031)", static_cast<long long>(*object.high));
+    }
+    if (object.low && wanted < *object.low) {
+      return format("at least %lld (abort 0x06090032)", static_cast<long long>(*object.low));
+    }
+    return "";
+  }
+
+  [[nodiscard]] static std::int64_t as_type(const ObjectSetting& setting,
+                                            const DeviceObject& object) {
+    const auto held = static_cast<std::int64_t>(setting.value & setting.size_mask());
+    const std::int64_t span = std::int64_t{setting.size_mask()} + 1;
+    return is_signed_type(object.type) && held >= span / 2 ? held - span : held;
+  }
+
+  [[nodiscard]] std::optional<std::uint32_t> value(const ObjectSetting& setting,
+                                                   const DeviceObject& object) const {
+    const auto written = values_.find(setting.object());
+    if (written != values_.end()) return written->second;
+    if (!object.value) return std::nullopt;
+    const std::int64_t held = *object.value + (object.adds_node ? node_ : 0);
+    return static_cast<std::uint32_t>(held) & setting.size_mask();
+  }
+
+  [[nodiscard]] static std::string describe(const DeviceObject& object) {
+    return format("%s, %u bits", access_text(object.access), data_type_bits(object.type));
+  }
+
+  void remember(bool same) { same_ = same && (same_ || !comparing_); }
+
+  const DeviceFile& file_;
+  std::uint8_t node_;
+  std::map<std::uint32_t, std::uint32_t> values_;  ///< that have been written
+  bool same_ = false;
+  bool comparing_ = false;
+};
+
+std::string action_text(const ObjectSetting& setting) {
+  const std::string value = shown(setting.value & setting.size_mask());
+  switch (setting.action) {
+    case Action::kWrite:
+      return "write " + value;
+    case Action::kWriteOrTake:
+      return "write " + value + " or take";
+    case Action::kExpect:
+      return "expect " + value;
+    case Action::kTake:
+      return "take";
+    case Action::kAwait:
+      return "await " + value;
+    case Action::kRecord:
+      return "record";
+    case Action::kCompare:
+      return "compare " + value;
+    case Action::kWriteIfOther:
+      return "write " + value + " if other";
+  }
+  return "";
+}
+
+const char* verdict_text(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kGood:
+      return "good";
+    case Verdict::kOther:
+      return "other";
+    case Verdict::kUnknown:
+      return "?";
+    case Verdict::kRefused:
+      return "REFUSED";
+  }
+  return "";
+}
+
+int append_joint(const Robot& robot, std::size_t joint, const DeviceFile* file, std::string& text) {
+  const Joint& it = robot.joints[joint];
+  text +=
+      format("node %u (%s), drive %s, %s\n", static_cast<unsigned>(it.node), it.name.c_str(),
+             it.drive.name.c_str(), file == nullptr ? "no description file" : file->name.c_str());
+  int refused = 0;
+  for (const CheckLine& line : check_joint(robot, joint, file)) {
+    refused += line.verdict == Verdict::kRefused ? 1 : 0;
+    text += format("  %04Xh:%u  %-26s %-8s %s\n", static_cast<unsigned>(line.setting.index),
+                   static_cast<unsigned>(line.setting.sub), action_text(line.setting).c_str(),
+                   verdict_text(line.verdict), line.device.c_str());
+  }
+  return refused;
+}
+
+}  // namespace
+
+std::vector<CheckLine> check_joint(const Robot& robot, std::size_t joint, const DeviceFile* file) {
+  std::vector<ObjectSetting> settings = joint_settings(robot, joint);
+  settings.insert(settings.begin(), heartbeat_setting(robot));
+  std::vector<CheckLine> lines;
+  if (file == nullptr) {
+    for (const ObjectSetting& setting : settings) lines.push_back({setting, "", Verdict::kUnknown});
+    return lines;
+  }
+  Model model(*file, robot.joints[joint].node);
+  for (const ObjectSetting& setting : settings) lines.push_back(model.run(setting));
+  return lines;
+}
+
+CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, DeviceFile>& files) {
+  check_robot(robot);
+  CheckReport report;
+  int refused = 0;
+  std::size_t unknown = 0;
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const auto file = files.find(robot.joints[i].node);
+    unknown += file == files.end() ? 1 : 0;
+    refused += append_joint(robot, i, file == files.end() ? nullptr : &file->second, report.text);
+  }
+  const BusLoad load = bus_load(robot);
+  report.text += format("bus: %u frames every %u us, %.1f %% of %u bit/s (%.1f %% at worst)\n",
+                        load.frames_per_cycle, robot.cycle_us, 100.0 * load.nominal,
+                        robot.bitrate_bps, 100.0 * load.worst);
+  for (const std::string& remark : drive_remarks(robot)) report.text += remark + "\n";
+  try {
+    check_bus_load(robot);
+  } catch (const InputError& error) {
+    report.good = false;
+    report.text += std::string(error.what()) + "\n";
+  }
+  report.good = report.good && refused == 0;
+  report.text += "verdict: ";
+  if (refused > 0) {
+    report.text +=
+        format("refused, %d object%s; see the lines above, and the profiles in hw/drives", refused,
+               refused == 1 ? "" : "s");
+  } else if (!report.good) {
+    report.text += "refused, the frames do not fit the bus";
+  } else if (unknown > 0) {
+    report.text += format("nothing refused; %zu joint%s without a description file (--eds)",
+                          unknown, unknown == 1 ? "" : "s");
+  } else {
+    report.text += "would come up";
+  }
+  report.text += "\n";
+  return report;
+}
+
+}  // namespace tenon::hw

@@ -1,0 +1,110 @@
+// What tenon-can check says of a robot's drives by their description files, and that it says what
+// bring-up then does.
+
+#include "hw/check/device_check.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "shared/config/files.h"
+#include "shared/config/load.h"
+#include "tests/support/places.h"
+
+namespace tenon::hw {
+namespace {
+
+DeviceFile twin(const std::string& name) {
+  const std::string file = "tests/twins/" + name + ".eds";
+  return parse_device_file(file, config::read_file(tests::in_tree(file)));
+}
+
+Robot robot(const std::string& name) {
+  return load_robot(tests::in_tree("hw/robots/" + name + "/robot.yaml"));
+}
+
+std::map<std::uint8_t, DeviceFile> for_all(const Robot& robot, const DeviceFile& file) {
+  std::map<std::uint8_t, DeviceFile> files;
+  for (const Joint& joint : robot.joints) files.emplace(joint.node, file);
+  return files;
+}
+
+const CheckLine& line_of(const std::vector<CheckLine>& lines, std::uint16_t index,
+                         std::uint8_t sub = 0) {
+  const auto found = std::find_if(lines.begin(), lines.end(), [&](const CheckLine& line) {
+    return line.setting.index == index && line.setting.sub == sub;
+  });
+  EXPECT_NE(found, lines.end()) << std::hex << index;
+  return *found;
+}
+
+TEST(DeviceCheck, TheShippedRobotsComeUpOnTheirOwnDrives) {
+  for (const auto& [name, file] : {std::pair{"lwa4p", "lwa4p"}, {"epos4", "epos4"}}) {
+    const Robot it = robot(name);
+    const CheckReport report = check_report(it, for_all(it, twin(file)));
+    EXPECT_TRUE(report.good) << report.text;
+    EXPECT_TRUE(report.text.ends_with("verdict: would come up\n")) << report.text;
+  }
+}
+
+TEST(DeviceCheck, ADriveByTheBookIsRefusedByTheObjectsThatTheLwaLacks) {
+  Robot it = robot("lwa4p");
+  for (Joint& joint : it.joints) joint.drive = DriveProfile{};
+  const DeviceFile file = twin("lwa4p");
+  std::vector<std::uint32_t> refused;
+  for (const CheckLine& line : check_joint(it, 0, &file)) {
+    if (line.verdict == CheckLine::Verdict::kRefused) refused.push_back(line.setting.object());
+  }
+  EXPECT_EQ(refused, (std::vector<std::uint32_t>{0x60C202, 0x600700, 0x605A00, 0x605B00, 0x605C00,
+                                                 0x608500, 0x606600}));
+  const CheckReport report = check_report(it, for_all(it, file));
+  EXPECT_FALSE(report.good);
+  EXPECT_NE(report.text.find("verdict: refused, 42 objects"), std::string::npos) << report.text;
+}
+
+TEST(DeviceCheck, SaysRangeAccessAndSize) {
+  Robot it = robot("epos4");
+  for (Joint& joint : it.joints) joint.drive = DriveProfile{};
+  DeviceFile file = twin("epos4");
+  file.objects[0x608500].type = 0x0006;
+  file.objects[0x101700].access = DeviceObject::Access::kReadOnly;
+  const auto lines = check_joint(it, 0, &file);
+  EXPECT_EQ(line_of(lines, 0x6066).device, "rw, 16 bits: at most 0 (abort 0x06090031)");
+  EXPECT_EQ(line_of(lines, 0x6085).device,
+            "rw, 16 bits: has 16 bits where 32 are written (abort 0x06070010)");
+  EXPECT_EQ(line_of(lines, 0x1017).device, "ro, 16 bits: cannot be written (abort 0x06010002)");
+}
+
+TEST(DeviceCheck, AFixedMappingThatIsTheOneWantedIsLeftAlone) {
+  const Robot it = robot("lwa4p");
+  DeviceFile file = twin("lwa4p");
+  for (const std::uint32_t index : {0x1600u, 0x1A00u}) {
+    for (std::uint32_t sub = 0; sub <= 8; ++sub) {
+      file.objects[index << 8 | sub].access = DeviceObject::Access::kConstant;
+    }
+  }
+  EXPECT_TRUE(check_report(it, for_all(it, file)).good);
+  file.objects[0x160002].value = 0x607A0020;
+  EXPECT_FALSE(check_report(it, for_all(it, file)).good);
+}
+
+TEST(DeviceCheck, WithoutAFileItSaysWhatItWouldDo) {
+  const CheckReport report = check_report(robot("csp6"), {});
+  EXPECT_TRUE(report.good);
+  EXPECT_NE(report.text.find("6 joints without a description file"), std::string::npos);
+  EXPECT_NE(report.text.find("  6007h:0  write 0x3"), std::string::npos) << report.text;
+  EXPECT_NE(report.text.find("bus: "), std::string::npos);
+}
+
+TEST(DeviceCheck, AnOverloadedBusIsRefusedWithItsNumbers) {
+  Robot it = robot("csp6");
+  it.targets_per_frame = 1;
+  const CheckReport report = check_report(it, {});
+  EXPECT_FALSE(report.good);
+  EXPECT_NE(report.text.find("load a bus of 1000000 bit/s"), std::string::npos) << report.text;
+}
+
+}  // namespace
+}  // namespace tenon::hw
