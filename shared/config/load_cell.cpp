@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
+#include <vector>
 
 #include "shared/config/drive_file.h"
 #include "shared/config/files.h"
@@ -27,7 +30,8 @@ SensorBias read_bias(const Value& value, const ForceTorqueSensor& sensor) {
 /// Of a robot that cannot be read there are none; load_cell() says why.
 void append_drive_files(const std::filesystem::path& robot_file,
                         std::vector<std::filesystem::path>& files) {
-  if (!std::filesystem::is_regular_file(robot_file)) return;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(robot_file, error)) return;
   const auto robot = Value::parse(robot_file, config::read_file(robot_file));
   const auto joints = robot.peek("joints");
   if (!joints) return;

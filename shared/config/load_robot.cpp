@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -67,7 +68,8 @@ class Drives {
     const auto file = drive_file(robot_file_, name.text());
     const auto [found, fresh] = read_.try_emplace(file);
     if (fresh) {
-      if (!std::filesystem::exists(file)) {
+      std::error_code error;
+      if (!std::filesystem::exists(file, error)) {
         name.refuse_value("a drive profile: " + file.string() + " does not exist");
       }
       found->second = load_drive(file);

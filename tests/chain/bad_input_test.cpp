@@ -210,6 +210,8 @@ TEST(BadInput, OfInspectorMonitorAndBusToolIsOneLineAndStatusTwo) {
   const PlanFiles plans(folder);
   const std::string inspect = executable("tenon-inspect");
   const std::string can = executable("tenon-can");
+  const std::string robot = in_tree("hw/robots/epos4/robot.yaml");
+  const std::string twin = in_tree("tests/twins/epos4.eds");
   const std::vector<BadInput> table = {
       {{executable("tenon-monitor"), "--lcm-url", "udpm:/239.255.76.67"},
        {"udpm:/239.255.76.67", "udpm://"}},
@@ -219,6 +221,10 @@ TEST(BadInput, OfInspectorMonitorAndBusToolIsOneLineAndStatusTwo) {
       {{can, "--can", kNobody, "scan"}, {kNobody, "cannot connect"}},
       {{can, "--can", "socketcan:nosuch0", "scan"}, {"socketcan:nosuch0"}},
       {{can, "--can", "nonsense:uri", "scan"}, {"nonsense:uri"}},
+      {{can, "scan"}, {"--can", "--help"}},
+      {{can, "check", robot, "--eds", robot}, {"robot.yaml:1", "no object"}},
+      {{can, "check", robot, "--eds", "9=" + twin}, {"9=", "no joint"}},
+      {{can, "check", robot, "--eds", twin, "--eds", twin}, {"epos4.eds", "its node"}},
   };
   for (const BadInput& bad : table) expect_refused(folder, bad);
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "shared/canopen/drive_profile.h"
+#include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "tests/support/places.h"
 #include "tests/support/refusal.h"
@@ -84,6 +85,21 @@ TEST_F(DriveFile, RefusesByFileLineKeyAndRange) {
                     " {object: 2010h, type: u8, value: 2}]\n"),
             "d.yaml:3: extra[1].object = 2010h, must be listed once");
   EXPECT_EQ(refused("boot_s: 1\n"), "d.yaml:1: the required key name is missing");
+}
+
+TEST_F(DriveFile, ADriveThatIsNotThereIsRefusedAtTheJoint) {
+  std::string robot = config::read_file(tests::in_tree("hw/robots/epos4/robot.yaml"));
+  const std::string urdf = tests::in_tree("hw/robots/gantry3/gantry3.urdf");
+  robot.replace(robot.find("../gantry3/gantry3.urdf"), 23, urdf);
+  for (const std::string& name : {std::string("nobodys"), std::string(5000, 'x')}) {
+    std::string other = robot;
+    other.replace(other.find("maxon_epos4"), 11, name);
+    write_file(folder_.path() / "robot.yaml", other);
+    const std::string line =
+        tests::refusal([&] { (void)load_robot(folder_.path() / "robot.yaml"); });
+    EXPECT_NE(line.find("joints[0].drive = "), std::string::npos) << line;
+    EXPECT_NE(line.find("does not exist"), std::string::npos) << line;
+  }
 }
 
 TEST_F(DriveFile, ARobotsJointNamesItsDrive) {

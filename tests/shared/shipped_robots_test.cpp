@@ -43,7 +43,7 @@ constexpr LiteralFrame kLwa4p[] = {{0, 0, 0, 0, 0, 0},
 
 KDL::Chain kdl_chain(const std::string& robot) {
   KDL::Chain chain;
-  if (robot == "gantry3") {
+  if (robot == "gantry3" || robot == "epos4") {
     for (const auto axis : {KDL::Joint::TransX, KDL::Joint::TransY, KDL::Joint::TransZ}) {
       chain.addSegment(KDL::Segment(KDL::Joint(axis), KDL::Frame::Identity()));
     }
@@ -72,7 +72,7 @@ Eigen::Matrix3d rotation_of_kdl(const KDL::Frame& frame) {
 }
 
 class ShippedRobot : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(All, ShippedRobot, ::testing::Values("gantry3", "lwa4p", "csp6"),
+INSTANTIATE_TEST_SUITE_P(All, ShippedRobot, ::testing::Values("gantry3", "lwa4p", "csp6", "epos4"),
                          [](const auto& robot) { return std::string(robot.param); });
 
 TEST_P(ShippedRobot, AgreesWithKdlOver100000Configurations) {
