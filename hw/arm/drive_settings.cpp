@@ -95,7 +95,8 @@ bool leaves(const DriveProfile& drive, std::initializer_list<DriveObject> object
   });
 }
 
-std::string remarks_of(const DriveProfile& drive, std::vector<std::string>& lines) {
+std::vector<std::string> remarks_of(const DriveProfile& drive) {
+  std::vector<std::string> lines;
   using enum DriveObject;
   if (leaves(drive, {kMasterWatch, kConnectionOption})) {
     lines.emplace_back(
@@ -117,7 +118,7 @@ std::string remarks_of(const DriveProfile& drive, std::vector<std::string>& line
     lines.emplace_back(
         "they do not watch their following error (6065h); only the executor does, while it runs");
   }
-  return drive.name;
+  return lines;
 }
 
 }  // namespace
@@ -194,9 +195,8 @@ std::vector<std::string> drive_remarks(const Robot& robot) {
     for (const Joint& other : robot.joints) {
       if (other.drive.name == joint.drive.name) joints += (joints.empty() ? "" : ", ") + other.name;
     }
-    std::vector<std::string> remarks;
-    told.push_back(remarks_of(joint.drive, remarks));
-    for (const std::string& remark : remarks) {
+    told.push_back(joint.drive.name);
+    for (const std::string& remark : remarks_of(joint.drive)) {
       lines.push_back("joints " + joints + " (drive " + joint.drive.name + "): " + remark);
     }
   }

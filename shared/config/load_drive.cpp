@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "shared/base/text.h"
 #include "shared/canopen/constants.h"
 #include "shared/canopen/drive_profile.h"
 #include "shared/config/files.h"

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/eds/ini_file.h"
 

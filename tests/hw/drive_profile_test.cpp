@@ -11,6 +11,7 @@
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/drive_settings.h"
 #include "hw/arm/node_settings.h"
+#include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "tests/hw/gantry_on_bus.h"
 #include "tests/support/frame_filter.h"
@@ -52,6 +53,23 @@ std::vector<std::string> notes(const GantryOnBus& gantry, std::uint8_t node) {
 TEST(DriveProfile, ByTheBookIsWhatItsFileSpellsOut) {
   EXPECT_EQ(shipped("cia402"), DriveProfile{});
   EXPECT_TRUE(drive_remarks(gantry_robot()).empty()) << drive_remarks(gantry_robot()).front();
+}
+
+TEST(DriveProfile, TheProtocolListsEveryObjectThatItTellsOf) {
+  const std::string text = config::read_file(tests::in_tree("hw/PROTOCOL.md"));
+  for (const DriveObjectRow& row : kDriveObjectRows) {
+    const std::string start = "\n| " + std::string(row.key) + " ";
+    const std::size_t at = text.find(start);
+    ASSERT_NE(at, std::string::npos) << row.key;
+    const std::string line = text.substr(at + 1, text.find('\n', at + 1) - at);
+    const char* presence = row.presence == Presence::kRequired ? "| required, " : "| optional, ";
+    EXPECT_NE(line.find(presence), std::string::npos) << line;
+    EXPECT_NE(line.find(row.size_bytes == 1   ? "8 |"
+                        : row.size_bytes == 2 ? "16 |"
+                                              : "32 |"),
+              std::string::npos)
+        << line;
+  }
 }
 
 TEST(DriveProfile, WhatAProfileCallsAbsentIsNeverAskedFor) {
