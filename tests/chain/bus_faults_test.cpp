@@ -39,7 +39,7 @@ class FaultyRun {
 
 TEST(BusFaults, SingleFramesLateRepeatedAndShortOnesAndAMissedCycleAreRiddenOut) {
   for (const char* spec :
-       {"drop:node=1,time_s=4", "drop:node=4,time_s=4", "drop:node=127,time_s=4.001",
+       {"drop:node=1,time_s=4", "drop:node=4,time_s=4", "drop:node=127,time_s=4,id=sync",
         "duplicate:node=2,time_s=2,duration_s=100,probability=0.2",
         "corrupt-length:node=3,time_s=4", "delay:node=2,time_s=4,duration_s=0.006,delay_s=0.0012",
         "queue-full:node=127,time_s=4,duration_s=0.003"}) {
