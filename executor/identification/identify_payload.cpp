@@ -13,6 +13,10 @@ namespace {
 
 constexpr std::size_t kPosesMin = 4;
 constexpr double kNoTurn_rad = 0.01;
+// Of the residual, for the tolerance of the bias; no less than the printed digits can tell.
+constexpr double kTolerance = 5.0;
+constexpr double kForceTolerance_N = 0.05;
+constexpr double kTorqueTolerance_Nm = 0.005;
 
 Eigen::Matrix3d cross_matrix(const Vector3& v) {
   Eigen::Matrix3d m;
@@ -104,6 +108,13 @@ std::string identified_text(const PayloadIdentification& p) {
   text += "for the cell file:\n";
   text += format("payload: {mass_kg: %.4f, com_m: [%.4f, %.4f, %.4f]}\n", p.mass_kg, p.com_m.x(),
                  p.com_m.y(), p.com_m.z());
+  text += format(
+      "sensor_bias: {force_N: [%.2f, %.2f, %.2f], torque_Nm: [%.3f, %.3f, %.3f], "
+      "force_tolerance_N: %.2f, torque_tolerance_Nm: %.3f}\n",
+      p.force_bias_N.x(), p.force_bias_N.y(), p.force_bias_N.z(), p.torque_bias_Nm.x(),
+      p.torque_bias_Nm.y(), p.torque_bias_Nm.z(),
+      std::max(kForceTolerance_N, kTolerance * p.force_residual_N),
+      std::max(kTorqueTolerance_Nm, kTolerance * p.torque_residual_Nm));
   return text;
 }
 

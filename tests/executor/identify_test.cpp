@@ -77,6 +77,11 @@ TEST(IdentifyPayload, AnExactReadingLeavesNoResidual) {
   EXPECT_NE(describe(found).find("payload: {mass_kg: 0.7000, com_m: [0.0300, 0.0200, -0.0500]}"),
             std::string::npos)
       << describe(found);
+  EXPECT_NE(describe(found).find(
+                "sensor_bias: {force_N: [1.00, 1.00, 1.00], torque_Nm: [1.000, 1.000, 1.000], "
+                "force_tolerance_N: 0.05, torque_tolerance_Nm: 0.005}"),
+            std::string::npos)
+      << describe(found);
 }
 
 TEST(IdentifyPayload, AGantryIsToldThatOnlyTheWeightsProjectionIsSeen) {
