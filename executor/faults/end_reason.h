@@ -38,8 +38,11 @@ enum class EndReason : std::uint8_t {
   kBlind = 27,           ///< value: s without a sample that guarded moves may see, bound
   kTareOffset = 28,      ///< index: wrench axis; value: mean less payload, the cell's bias, bound
   kNotAtGoal = 29,       ///< index: axis; value: where the tool is, wanted: the goal, bound
+  kWrenchFrozen = 30,    ///< value: equal samples in a row, their counter running
+  kTareDrift = 31,       ///< index: wrench axis; value: what its mean moved by at rest, bound
+  kEncoderJump = 32,     ///< index: joint; value: m or rad since its last answer, bound
 };
-inline constexpr EndReason kLastEndReason = EndReason::kNotAtGoal;
+inline constexpr EndReason kLastEndReason = EndReason::kEncoderJump;
 [[nodiscard]] const char* to_string(EndReason reason);
 
 /// How the motion comes to rest.

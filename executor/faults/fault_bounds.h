@@ -14,6 +14,7 @@ inline constexpr double kEnableTimeout_s = 5.0;       ///< for the drives
 inline constexpr double kBrakeWatch_s = 0.5;          ///< after the drives are off
 inline constexpr int kTareSamples = 200;
 inline constexpr int kTareTries = 5;              ///< while the sensor is not steady
+inline constexpr int kFrozenSamples = 7;          ///< equal ones in a row
 inline constexpr int kTouchSamples = 2;           ///< above the threshold that make a contact
 inline constexpr int kLateCyclesMost = 50;        ///< at once
 inline constexpr int kIncompleteCyclesMost = 30;  ///< at once

@@ -61,6 +61,10 @@ constexpr const char* arm_fault_name(ArmFaultKind kind) {
       return "queue_full";
     case ArmFaultKind::kBusSilent:
       return "bus_silent";
+    case ArmFaultKind::kSetpointNotFinite:
+      return "setpoint_not_finite";
+    case ArmFaultKind::kSetpointUnsent:
+      return "setpoint_unsent";
   }
   return nullptr;
 }
@@ -135,6 +139,11 @@ constexpr std::array kTable = {
            {.cycles = 5}),
     of_arm(ArmFaultKind::kBusSilent, "more than 3 cycles in a row in which nobody answers",
            {.cycles = 6}),
+    of_arm(ArmFaultKind::kSetpointNotFinite, "every setpoint at the arm port", kAtOnce,
+           "the setpoint"),
+    of_arm(ArmFaultKind::kSetpointUnsent,
+           "leaky bucket of each joint's setpoints that never left; one in a hundred may be so",
+           {.cycles = 7}, "the first of so many cycles"),
     fault(EndReason::kArmNotEnabled, "arm_not_enabled", "state of the arm, every cycle", kAtOnce),
     fault(EndReason::kEnableTimeout, "enable_timeout", "state of the arm while it is enabled",
           {.cycles = 1, .time_s = kEnableTimeout_s}, "the first cycle", EndManner::kHold),
@@ -167,6 +176,15 @@ constexpr std::array kTable = {
           "mean of the tare against the cell's sensor_bias and payload",
           {.cycles = kTareTries * kTareSamples + 2}, "the tare's first sample", EndManner::kHold),
     ended(EndReason::kNotAtGoal, "not_at_goal", "tool's pose at the plan's end against its goal"),
+    fault(EndReason::kWrenchFrozen, "wrench_frozen",
+          "every wrench against the one before, while its counter runs",
+          {.cycles = kFrozenSamples + 2}),
+    fault(EndReason::kTareDrift, "tare_drift",
+          "mean wrench of later samples at rest in free air against the first's: the tare's "
+          "halves, and where a step waits",
+          {.cycles = kTareSamples + 2}, "the first sample at rest", EndManner::kHold),
+    fault(EndReason::kEncoderJump, "encoder_jump",
+          "every joint's way against its commands and its full speed", kAtOnce),
 };
 
 constexpr bool every_reason_has_a_row() {

@@ -23,6 +23,16 @@ double time_to_rest_s(const Robot& robot) {
   return longest_s + robot.response_lag_s + kMargin_s;
 }
 
+// The tare's halves make the means.
+DriftWatch::Parameters drift_parameters(const ForceTorqueSensor& sensor, const SensorTare& tare,
+                                        int tare_samples) {
+  return {.samples = std::max(1, tare_samples / 2),
+          .force_deviation_N = tare.deviation_max(0),
+          .torque_deviation_Nm = tare.deviation_max(3),
+          .force_per_count_N = sensor.force_per_count_N,
+          .torque_per_count_Nm = sensor.torque_per_count_Nm};
+}
+
 // The task has done what it could, and stands.
 bool came_to_its_end(EndReason reason) {
   return reason == EndReason::kPlanDone || reason == EndReason::kPlanFailed ||
@@ -40,6 +50,7 @@ ControlTask::ControlTask(const Cell& cell, const Parameters& parameters)
       kinematics_(cell_),
       supervision_(cell_, kinematics_, parameters.supervision),
       sensor_tare_(SensorTare::parameters_for(cell.robot.sensor, parameters.tare_samples)),
+      drift_watch_(drift_parameters(cell.robot.sensor, sensor_tare_, parameters.tare_samples)),
       joints_(cell_.robot, kinematics_) {
   parameters_.quick_stop_s = std::max(parameters_.quick_stop_s, time_to_rest_s(cell_.robot));
 }
@@ -207,19 +218,43 @@ ControlTask::Turn ControlTask::tare(const ArmFeedback& feedback) {
                   .bound = parameters_.tare_motion_max};
   }
   if (!feedback.wrench_fresh) return {};
-  switch (sensor_tare_.add(feedback.wrench)) {
-    case SensorTare::Status::kGathering:
-      return {};
-    case SensorTare::Status::kDone:
-      if (const auto pushed = supervision_.tare(sensor_tare_.mean())) return *pushed;
-      return Event::kTared;
-    case SensorTare::Status::kUnsteady:
-      // An arm that has just taken its load off the brakes swings for a while.
-      if (++unsteady_tares_ >= kTareTries) return unsteady(sensor_tare_);
-      sensor_tare_.start_again();
-      return {};
+  if (!drift_) drift_ = watch_drift(feedback.wrench);
+  if (sensor_tare_.add(feedback.wrench) == SensorTare::Status::kGathering) return {};
+  return end_tare();
+}
+
+ControlTask::Turn ControlTask::end_tare() {
+  // A zero that moves steadily is unsteady, too: the cause is named and not its effect.
+  const auto& drift = drift_;
+  const bool steadily = drift && sensor_tare_.deviation_beside(drift->index, drift->value) <=
+                                     sensor_tare_.deviation_max(drift->index);
+  if (steadily && !parameters_.masked.masks(drift->reason, ArmFaultKind::kNone)) return *drift;
+  if (sensor_tare_.status() == SensorTare::Status::kUnsteady) {
+    // An arm that has just taken its load off the brakes swings for a while.
+    if (++unsteady_tares_ >= kTareTries) return unsteady(sensor_tare_);
+    sensor_tare_.start_again();
+    drift_watch_.restart();
+    drift_.reset();
+    return {};
   }
-  return {};
+  if (const auto pushed = supervision_.tare(sensor_tare_.mean())) return *pushed;
+  drift_watch_.restart();
+  return Event::kTared;
+}
+
+std::optional<Ending> ControlTask::watch_drift(const Vector6& sample) {
+  const auto drift = drift_watch_.add(sample);
+  if (!drift) return std::nullopt;
+  return Ending{.reason = EndReason::kTareDrift,
+                .index = drift->axis,
+                .value = drift->moved,
+                .bound = drift->bound};
+}
+
+std::optional<Ending> ControlTask::wait_in_free_air() {
+  if (!supervision_.wrench_usable()) return std::nullopt;
+  const std::optional<Ending> drift = watch_drift(supervision_.wrench());
+  return drift_watch_.began_at_zero() ? drift : std::nullopt;
 }
 
 // A joint that does not answer may move.

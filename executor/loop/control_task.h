@@ -19,6 +19,7 @@
 #include "executor/motion/joint_command.h"
 #include "executor/motion/tool_kinematics.h"
 #include "executor/record/cycle_record.h"
+#include "executor/sensing/drift_watch.h"
 #include "executor/sensing/sensor_tare.h"
 #include "executor/states/ending.h"
 #include "executor/states/state_machine.h"
@@ -109,6 +110,11 @@ class ControlTask {
   /// Fills in what the common part of a record does not tell.
   virtual void write_motion(CycleRecord& record) = 0;
 
+  /// The tool waits in free air. @return that the wrench moves all the same
+  [[nodiscard]] std::optional<Ending> wait_in_free_air();
+  /// It does so no more.
+  void leave_free_air() { drift_watch_.restart(); }
+
   [[nodiscard]] double time_in_state_s() const;
   [[nodiscard]] std::int64_t motion_ns() const { return motion_ns_; }
   [[nodiscard]] const ToolKinematics& kinematics() const { return kinematics_; }
@@ -129,6 +135,8 @@ class ControlTask {
   [[nodiscard]] Turn act(const ArmFeedback& feedback);
   [[nodiscard]] Turn wait_for_drives(const ArmFeedback& feedback) const;
   [[nodiscard]] Turn tare(const ArmFeedback& feedback);
+  [[nodiscard]] Turn end_tare();
+  [[nodiscard]] std::optional<Ending> watch_drift(const Vector6& sample);
   [[nodiscard]] Turn wait_for_rest(const ArmFeedback& feedback);
   [[nodiscard]] Turn wait_for_disabled(const ArmFeedback& feedback);
   [[nodiscard]] Turn watch_brakes() const;
@@ -143,6 +151,8 @@ class ControlTask {
   Supervision supervision_;
   SensorTare sensor_tare_;
   int unsteady_tares_ = 0;
+  DriftWatch drift_watch_;
+  std::optional<Ending> drift_;  ///< of the tare
   JointCommand joints_;
 
   State state_ = State::kWaiting;

@@ -128,8 +128,16 @@ bool Controller::waits_for_the_user() noexcept {
   return waits_;
 }
 
+// In a contact the wrench may go its own way: who could tell why.
+ControlTask::Turn Controller::wait_at_rest() {
+  if (runner_.signature().bits != 0) return {};
+  if (const auto drift = wait_in_free_air()) return *drift;
+  return {};
+}
+
 ControlTask::Turn Controller::run(const ArmFeedback& /*feedback*/) {
-  if (waits_for_the_user()) return {};
+  if (waits_for_the_user()) return wait_at_rest();
+  leave_free_air();
   GuardedMove::Input input;
   input.time_ns = motion_ns();
   input.pose = tool_.seen(supervision().tool());

@@ -59,6 +59,7 @@ class Controller : public ControlTask {
 
   [[nodiscard]] Turn start_approach();
   [[nodiscard]] bool waits_for_the_user() noexcept;
+  [[nodiscard]] Turn wait_at_rest();
   void leave_the_tool();
   void yield_here();
 

@@ -11,7 +11,9 @@ Supervision::Supervision(const Cell& cell, const ToolKinematics& kinematics,
       kinematics_(kinematics),
       parameters_(parameters),
       wrench_(cell),
-      following_watch_(cell.robot) {
+      frozen_watch_(cell.robot.sensor),
+      following_watch_(cell.robot),
+      encoder_watch_(cell.robot) {
   // The arm counts a sensor's silence in cycles, and knows its node: where cycles are long, too, it
   // is to be heard first.
   const double cycle_s = 1e-6 * cell.robot.cycle_us;
@@ -20,11 +22,13 @@ Supervision::Supervision(const Cell& cell, const ToolKinematics& kinematics,
 }
 
 std::optional<Ending> Supervision::update(const ArmFeedback& feedback, bool following) {
-  take_joints(feedback);
+  const std::optional<Ending> jumped = take_joints(feedback);
   const std::optional<Ending> sensor = take_wrench(feedback);
   const std::optional<Ending> arm = watch_arm(feedback, following);
   const std::optional<Ending> astray = watch_following(feedback, following);
   const std::optional<Ending> force = watch_force(feedback);
+  // A jump first: what it leads to is felt and seen later.
+  if (jumped) return jumped;
   if (sensor) return sensor;
   if (arm) return arm;
   return force ? force : astray;
@@ -48,7 +52,7 @@ std::optional<Ending> Supervision::tare(const Vector6& mean_raw) {
   return std::nullopt;
 }
 
-void Supervision::take_joints(const ArmFeedback& feedback) {
+std::optional<Ending> Supervision::take_joints(const ArmFeedback& feedback) {
   bool all = true;
   for (std::size_t i = 0; i < cell_.robot.joints.size(); ++i) {
     const bool fresh =
@@ -59,6 +63,12 @@ void Supervision::take_joints(const ArmFeedback& feedback) {
   }
   known_ = known_ || all;
   if (known_) tool_ = kinematics_.tool(joints_);
+  const auto jump = encoder_watch_.update(joints_, feedback.joints_fresh, feedback.sync_ns);
+  if (!jump) return std::nullopt;
+  return Ending{.reason = EndReason::kEncoderJump,
+                .index = jump->joint,
+                .value = jump->moved,
+                .bound = jump->bound};
 }
 
 std::optional<Ending> Supervision::take_wrench(const ArmFeedback& feedback) {
@@ -69,9 +79,12 @@ std::optional<Ending> Supervision::take_wrench(const ArmFeedback& feedback) {
   blind_s_ = blind ? blind_s_ + 1e-6 * cell_.robot.cycle_us : 0.0;
   blind_cycles_ += blind ? 1 : 0;
   if (!feedback.wrench_fresh || !known_) return std::nullopt;
+  const bool frozen = frozen_watch_.update(feedback.wrench, feedback.wrench_counter);
   switch (wrench_.update(feedback.wrench, tool_)) {
     case WrenchEstimator::Status::kGood:
-      return std::nullopt;
+      if (!frozen) return std::nullopt;
+      return Ending{.reason = EndReason::kWrenchFrozen,
+                    .value = static_cast<double>(kFrozenSamples)};
     case WrenchEstimator::Status::kSaturated: {
       const int axis = wrench_.axis();
       const ForceTorqueSensor& sensor = cell_.robot.sensor;

@@ -9,7 +9,9 @@
 
 #include "executor/faults/fault_bounds.h"
 #include "executor/motion/tool_kinematics.h"
+#include "executor/sensing/encoder_watch.h"
 #include "executor/sensing/following_watch.h"
+#include "executor/sensing/frozen_watch.h"
 #include "executor/sensing/wrench_estimator.h"
 #include "executor/states/ending.h"
 #include "shared/cell/cell.h"
@@ -43,6 +45,7 @@ class Supervision {
   void commanded(const Vector6& velocity, const JointVector& position) {
     wrench_.commanded(velocity);
     following_watch_.commanded(position);
+    encoder_watch_.commanded(position);
   }
 
   /// Every joint has answered at least once.
@@ -61,7 +64,7 @@ class Supervision {
   [[nodiscard]] double peak_torque_Nm() const { return peak_torque_Nm_; }
 
  private:
-  void take_joints(const ArmFeedback& feedback);
+  [[nodiscard]] std::optional<Ending> take_joints(const ArmFeedback& feedback);
   [[nodiscard]] std::optional<Ending> take_wrench(const ArmFeedback& feedback);
   [[nodiscard]] std::optional<Ending> watch_following(const ArmFeedback& feedback, bool following);
   [[nodiscard]] std::optional<Ending> watch_arm(const ArmFeedback& feedback, bool following) const;
@@ -71,7 +74,9 @@ class Supervision {
   const ToolKinematics& kinematics_;
   Parameters parameters_;
   WrenchEstimator wrench_;
+  FrozenWatch frozen_watch_;
   FollowingWatch following_watch_;
+  EncoderWatch encoder_watch_;
 
   JointVector joints_{};
   std::array<int, kMaxJoints> misses_{};

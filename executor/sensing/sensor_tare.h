@@ -56,6 +56,12 @@ class SensorTare {
 
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] const Vector6& mean() const { return mean_; }
+  /// What is left of an axis' standard deviation once a steady rise is taken off that parts the
+  /// means of both halves by `moved`.
+  [[nodiscard]] double deviation_beside(int axis, double moved) const {
+    const double all = deviation(axis);
+    return std::sqrt(std::max(0.0, all * all - moved * moved / 3.0));
+  }
   /// Axis 0..5 whose standard deviation is largest against its bound.
   [[nodiscard]] int worst_axis() const { return worst_axis_; }
   [[nodiscard]] double deviation(int axis) const {

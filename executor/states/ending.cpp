@@ -111,6 +111,27 @@ std::string blind(const Ending& e) {
       e.value, e.bound);
 }
 
+std::string wrench_frozen(const Ending& e) {
+  return format(
+      "the sensor's wrench has not changed for %.0f samples, though its counter runs: it measures "
+      "no more; restart the sensor",
+      e.value);
+}
+
+std::string tare_drift(const Ending& e) {
+  return format(
+      "the sensor's %s moved by %.3g %s at rest in free air, at most %.3g: its zero drifts, or "
+      "something began to push; let it warm up, and free the part",
+      axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
+}
+
+std::string encoder_jump(const Ending& e, const Joint& joint) {
+  return format(
+      "node %d (%s) answers that it moved by %.3g %s at once, at most %.3g by its commands and "
+      "its speed: check its encoder",
+      static_cast<int>(joint.node), joint.name.c_str(), e.value, joint_unit(joint), e.bound);
+}
+
 std::string feedback_poor(const Ending& e) {
   return format("feedback was missing in %.0f cycles, too many for what the plan was made for",
                 e.value);
@@ -140,6 +161,16 @@ std::string nothing_met(const Ending& e) {
                 e.value < 0.0 ? '-' : '+', axis_name(e.index));
 }
 
+std::string of_the_sensor(const Ending& e) {
+  if (e.reason == EndReason::kTareUnsteady) return tare_unsteady(e);
+  if (e.reason == EndReason::kTareOffset) return tare_offset(e);
+  if (e.reason == EndReason::kTareDrift) return tare_drift(e);
+  if (e.reason == EndReason::kSensorSaturated) return sensor_saturated(e);
+  if (e.reason == EndReason::kWrenchFrozen) return wrench_frozen(e);
+  if (e.reason == EndReason::kSensorNotFinite) return "the sensor's reading is not a number";
+  return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);
+}
+
 std::string of_a_joint(const Ending& e, const Joint& joint, const Plan& plan) {
   if (e.reason == EndReason::kOtherBranch) {
     return "joint " + joint.name + off_start(joint_unit(joint), e, plan);
@@ -149,6 +180,7 @@ std::string of_a_joint(const Ending& e, const Joint& joint, const Plan& plan) {
   if (e.reason == EndReason::kJointSpeed) return joint_speed(e, joint);
   if (e.reason == EndReason::kFeedbackMissing) return feedback_missing(e, joint);
   if (e.reason == EndReason::kBrakeFailed) return brake_failed(e, joint);
+  if (e.reason == EndReason::kEncoderJump) return encoder_jump(e, joint);
   return following_error(e, joint);
 }
 
@@ -185,9 +217,6 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return "stopped on request";
     case EndReason::kNotAtStart:
       return format("the tool's %s", axis_name(e.index)) + off_start(axis_unit(e.index), e, plan);
-    case EndReason::kTareUnsteady:
-    case EndReason::kTareOffset:
-      return e.reason == EndReason::kTareOffset ? tare_offset(e) : tare_unsteady(e);
     case EndReason::kNotAtGoal:
       return not_at_goal(e, plan);
     case EndReason::kContactOnApproach:
@@ -198,10 +227,6 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return format("external force %.4g N above force_fault_N = %.4g", e.value, e.bound);
     case EndReason::kTorqueFault:
       return format("external torque %.4g Nm above torque_fault_Nm = %.4g", e.value, e.bound);
-    case EndReason::kSensorSaturated:
-      return sensor_saturated(e);
-    case EndReason::kSensorNotFinite:
-      return "the sensor's reading is not a number";
     case EndReason::kArmFault:
       return arm_fault(e.arm_fault, arm_fault_text);
     case EndReason::kArmNotEnabled:
@@ -209,8 +234,6 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
                     to_string(static_cast<ArmState>(e.index)));
     case EndReason::kEnableTimeout:
       return format("the arm was not enabled within %.3g s", e.value);
-    case EndReason::kWrenchMissing:
-      return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);
     case EndReason::kBlind:
       return blind(e);
     case EndReason::kOverruns:
@@ -221,6 +244,14 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
       return "all readings are taken";
     case EndReason::kNothingMet:
       return nothing_met(e);
+    case EndReason::kTareUnsteady:
+    case EndReason::kTareOffset:
+    case EndReason::kTareDrift:
+    case EndReason::kSensorSaturated:
+    case EndReason::kSensorNotFinite:
+    case EndReason::kWrenchFrozen:
+    case EndReason::kWrenchMissing:
+      return of_the_sensor(e);
     case EndReason::kOtherBranch:
     case EndReason::kTareMoving:
     case EndReason::kJointLimit:
@@ -228,6 +259,7 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kFeedbackMissing:
     case EndReason::kBrakeFailed:
     case EndReason::kFollowingError:
+    case EndReason::kEncoderJump:
       return of_a_joint(e, joint_of(cell, e.index), plan);
   }
   return "?";

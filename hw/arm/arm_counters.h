@@ -15,7 +15,7 @@ struct ArmCounters {
   std::uint64_t unexpected_frames = 0;
   std::uint64_t emergencies = 0;
   std::uint64_t send_failures = 0;
-  std::uint64_t invalid_setpoints = 0;  ///< not finite: the last target was sent again
+  std::uint64_t invalid_setpoints = 0;  ///< not finite: they were not sent
 };
 
 }  // namespace tenon::hw

@@ -17,19 +17,20 @@ ArmOutput::ArmOutput(const Robot& robot, CanBus& bus, std::span<JointChannel> jo
       supervision_(supervision),
       counters_(counters) {}
 
-void ArmOutput::send(const CanFrame& frame) noexcept {
+bool ArmOutput::send(const CanFrame& frame) noexcept {
   switch (bus_.send(frame)) {
     case SendResult::kSent:
-      return;
+      return true;
     case SendResult::kQueueFull:
       ++counters_.send_failures;
       supervision_.frame_refused();
-      return;
+      return false;
     case SendResult::kDown:
       ++counters_.send_failures;
       supervision_.bus_lost(bus_.status());
-      return;
+      return true;
   }
+  return true;
 }
 
 void ArmOutput::send_sync() noexcept { send(canopen::sync_frame()); }
@@ -40,10 +41,10 @@ void ArmOutput::send_setpoints(ArmRequest request, bool follow,
     if (!joints_[i].seen()) {
       continue;
     }
-    const bool valid = joints_[i].update(request, follow, position[i]);
-    counters_.invalid_setpoints += valid ? 0 : 1;
-    if (!packed_) {
-      send(joints_[i].command_frame());
+    // That all are numbers has been seen to.
+    (void)joints_[i].update(request, follow, position[i]);
+    if (!packed_ && !send(joints_[i].command_frame())) {
+      supervision_.setpoint_refused(i);
     }
   }
   if (packed_) {
@@ -64,7 +65,9 @@ void ArmOutput::send_packed_setpoints() noexcept {
   for (std::size_t i = 0; i < joints_.size(); i += 2) {
     const JointChannel* second = i + 1 < joints_.size() ? &joints_[i + 1] : nullptr;
     if (joints_[i].seen() && (second == nullptr || second->seen())) {
-      send(joints_[i].targets_frame(second));
+      if (send(joints_[i].targets_frame(second))) continue;
+      supervision_.setpoint_refused(i);
+      if (second != nullptr) supervision_.setpoint_refused(i + 1);
     }
   }
 }

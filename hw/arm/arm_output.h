@@ -33,7 +33,8 @@ class ArmOutput {
   void send_heartbeat(std::int64_t now_ns) noexcept;
 
  private:
-  void send(const CanFrame& frame) noexcept;
+  /// False: the transmit queue is full.
+  bool send(const CanFrame& frame) noexcept;
   void send_packed_setpoints() noexcept;
 
   CanBus& bus_;

@@ -1,6 +1,7 @@
 #include "hw/arm/arm_supervision.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hw/canopen/object_setting.h"
 #include "hw/cia402/drive_state.h"
@@ -46,6 +47,10 @@ void ArmSupervision::begin(std::int64_t now_ns) noexcept {
   wrong_length_.fill(0);
   stale_cycles_ = silent_cycles_ = refused_cycles_ = 0;
   refused_ = false;
+  send_failures_.reset();
+  refusals_ = 0;
+  unsent_.fill(false);
+  unsent_level_.fill(0.0);
   enter_state(ArmState::kDisabled, now_ns);
 }
 
@@ -151,8 +156,21 @@ void ArmSupervision::check_silence(const ArmFeedback& feedback) noexcept {
   }
 }
 
-void ArmSupervision::check_sending() noexcept {
-  refused_cycles_ = refused_ ? refused_cycles_ + 1 : 0;
+void ArmSupervision::check_setpoints(const JointVector& position) noexcept {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (joints_[i].is_target(position[i])) continue;
+    ++counters_.invalid_setpoints;
+    raise({ArmFaultKind::kSetpointNotFinite, joints_[i].node(), 0, 0});
+  }
+}
+
+void ArmSupervision::check_sending(const CanBusStatus& status) noexcept {
+  // An adapter that reads too slowly takes frames and drops them later: whose, nobody can tell.
+  const bool dropped = send_failures_ && status.send_failures - *send_failures_ > refusals_;
+  send_failures_ = status.send_failures;
+  refusals_ = 0;
+  check_unsent(dropped);
+  refused_cycles_ = refused_ || dropped ? refused_cycles_ + 1 : 0;
   refused_ = false;
   if (refused_cycles_ > kRefusedCycles) {
     raise({ArmFaultKind::kQueueFull, 0, 0, refused_cycles_});
@@ -163,6 +181,18 @@ void ArmSupervision::raise_missing(ArmFaultKind kind, std::uint8_t node, std::ui
                                    std::uint8_t wrong_length) noexcept {
   if (wrong_length == 0) return raise({kind, node, 0, cycles});
   raise({kind, node, object_of(tenon::canopen::kTpdoMapping), wrong_length - 1u});
+}
+
+void ArmSupervision::check_unsent(bool dropped) noexcept {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    double& level = unsent_level_[i];
+    level = unsent_[i] || dropped ? level + 1.0 : std::max(0.0, level - kUnsentShare);
+    unsent_[i] = false;
+    if (level > kUnsentMost) {
+      raise({ArmFaultKind::kSetpointUnsent, joints_[i].node(), 0,
+             static_cast<std::uint32_t>(std::ceil(level))});
+    }
+  }
 }
 
 void ArmSupervision::check_feedback(const ArmFeedback& feedback) noexcept {

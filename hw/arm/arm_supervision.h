@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,9 @@ class ArmSupervision {
   /// feel like a contact.
   static constexpr std::uint32_t kSilentCycles = 3;
   static constexpr std::uint32_t kRefusedCycles = 2;
+  /// Of a joint's setpoints that never left, while one in a hundred may be so for ever.
+  static constexpr double kUnsentMost = 5.0;
+  static constexpr double kUnsentShare = 0.01;
   static constexpr std::int64_t kEnablingTimeout_ns = 2'000'000'000;
 
   ArmSupervision(const Robot& robot, std::span<const JointChannel> joints, ArmCounters& counters);
@@ -56,7 +60,12 @@ class ArmSupervision {
   /// A frame could not be sent because the bus is gone. @param status of that bus
   void bus_lost(const CanBusStatus& status) noexcept;
   /// A frame of this cycle found the transmit queue full.
-  void frame_refused() noexcept { refused_ = true; }
+  void frame_refused() noexcept {
+    refused_ = true;
+    ++refusals_;
+  }
+  /// It was this joint's setpoint. @param joint its place
+  void setpoint_refused(std::size_t joint) noexcept { unsent_[joint] = true; }
   void take_heartbeat(const canopen::Heartbeat& heartbeat, std::int64_t now_ns) noexcept;
   void take_emergency(const canopen::Emergency& emergency) noexcept;
   /// Process data of another length than their mapping's. @param data_bytes that came
@@ -66,8 +75,10 @@ class ArmSupervision {
   void check_heartbeats(std::int64_t now_ns) noexcept;
   /// @param feedback of the cycle that has closed
   void check_feedback(const ArmFeedback& feedback) noexcept;
-  /// After all of the cycle's frames.
-  void check_sending() noexcept;
+  /// What the joints are about to be told, m or rad.
+  void check_setpoints(const JointVector& position) noexcept;
+  /// After all of the cycle's frames. @param status of the bus: what it took and then dropped, too
+  void check_sending(const CanBusStatus& status) noexcept;
   /// Holds the drives against what is asked, and goes on towards it.
   void advance(std::int64_t now_ns, ArmRequest request) noexcept;
   /// What the drives are asked instead: in a fault they stop, and are not enabled.
@@ -77,6 +88,7 @@ class ArmSupervision {
   void enter_state(ArmState state, std::int64_t now_ns) noexcept;
   void check_drives(ArmRequest request) noexcept;
   void check_silence(const ArmFeedback& feedback) noexcept;
+  void check_unsent(bool dropped) noexcept;
   void enable(std::int64_t now_ns) noexcept;
   void raise_of_drive(ArmFaultKind kind, std::size_t joint) noexcept;
   void raise_missing(ArmFaultKind kind, std::uint8_t node, std::uint32_t cycles,
@@ -103,6 +115,10 @@ class ArmSupervision {
   /// Per joint, and of the sensor behind them: 1 + the length of a frame that was dropped since the
   /// last good one.
   std::array<std::uint8_t, kMaxJoints + 1> wrong_length_{};
+  std::optional<std::uint64_t> send_failures_;     ///< of the bus, as of the last cycle
+  std::uint64_t refusals_ = 0;                     ///< of them, told as they happened
+  std::array<bool, kMaxJoints> unsent_{};          ///< in this cycle
+  std::array<double, kMaxJoints> unsent_level_{};  ///< leaky
 };
 
 }  // namespace tenon::hw

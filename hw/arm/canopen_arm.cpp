@@ -93,11 +93,14 @@ void CanopenArm::command(std::int64_t now_ns, ArmRequest request,
   if (intake_.close_cycle()) {
     supervision_.check_feedback(intake_.feedback());
   }
+  if (was_enabled && request == ArmRequest::kEnabled) {
+    supervision_.check_setpoints(position);
+  }
   supervision_.advance(now_ns, request);
   const bool follow = was_enabled && state() == ArmState::kEnabled;
   output_.send_setpoints(supervision_.granted(request), follow, position);
   output_.send_heartbeat(now_ns);
-  supervision_.check_sending();
+  supervision_.check_sending(bus_.status());
   bus_.flush();
 }
 

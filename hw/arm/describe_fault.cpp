@@ -181,6 +181,18 @@ std::string wrong_length(const ArmFault& fault) {
       fault.code);
 }
 
+std::string setpoint(const ArmFault& fault) {
+  if (fault.kind == ArmFaultKind::kSetpointNotFinite) {
+    return "its setpoint is no number; it was not sent, and the drives stop: a fault of the "
+           "program "
+           "that commands";
+  }
+  return format(
+      "%u of its setpoints (RPDO) never left, one in a hundred may: check bus load, bit rate and "
+      "txqueuelen",
+      fault.code);
+}
+
 /// Of a frame that betrays another master (hw/arm/other_master.h).
 const char* master_frame_name(std::uint32_t cob_id) {
   if (cob_id == tenon::canopen::kNmt) return "NMT command";
@@ -243,6 +255,9 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
           "no node answered in %u cycles in a row, at most %u are allowed; check adapter, wiring "
           "and whether the interface was down",
           fault.code, ArmSupervision::kSilentCycles);
+    case ArmFaultKind::kSetpointNotFinite:
+    case ArmFaultKind::kSetpointUnsent:
+      return node_name(fault, robot) + setpoint(fault);
     case ArmFaultKind::kBusOff:
       return "the CAN controller went bus-off (too many errors); check wiring, termination and "
              "bit rate";

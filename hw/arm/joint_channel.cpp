@@ -44,12 +44,16 @@ bool JointChannel::take_feedback(const CanFrame& frame) {
   return true;
 }
 
+bool JointChannel::is_target(double setpoint) const {
+  return std::isfinite(setpoint * counts_per_unit_ + zero_counts_);
+}
+
 bool JointChannel::update(ArmRequest request, bool follow, double setpoint) {
   const bool enabled = state() == DriveState::kOperationEnabled;
   bool valid = true;
   if (follow) {
     const double counts = std::round(setpoint * counts_per_unit_ + zero_counts_);
-    valid = std::isfinite(counts);
+    valid = is_target(setpoint);
     if (valid) {
       target_counts_ = static_cast<std::int32_t>(
           std::clamp<double>(counts, std::numeric_limits<std::int32_t>::min(),

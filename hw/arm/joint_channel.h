@@ -44,6 +44,8 @@ class JointChannel {
   /// did not answer in this cycle. What is not off after kStopPatience_s loses its voltage all the
   /// same.
   [[nodiscard]] bool update(ArmRequest request, bool follow, double setpoint);
+  /// Whether a setpoint (m or rad) is a number, in counts too.
+  [[nodiscard]] bool is_target(double setpoint) const;
   /// RPDO1 with both.
   [[nodiscard]] CanFrame command_frame() const;
   /// RPDO1 of packed targets. @param second of the pair, nullptr where there is none

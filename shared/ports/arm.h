@@ -46,6 +46,8 @@ enum class ArmFaultKind : std::uint8_t {
   kOtherMaster = 12,  ///< another master sends on the bus; code is the COB-ID that betrayed it
   kQueueFull = 13,    ///< our own frames were refused; code: cycles in a row
   kBusSilent = 14,    ///< nobody answered at all; code: cycles in a row
+  kSetpointNotFinite = 15,  ///< of a joint that follows; nothing of it was sent
+  kSetpointUnsent = 16,     ///< a joint's setpoints were refused again and again; code: how many
 };
 
 /// Plain data, so that real-time code can carry it. describe() in hw gives the line for people.

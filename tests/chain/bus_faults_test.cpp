@@ -81,6 +81,9 @@ TEST(BusFaults, WhatLastsEndsTheRunByName) {
            Case{"queue-full:node=127,time_s=4,duration_s=0.006", ArmFaultKind::kQueueFull, 0},
            Case{"queue-full:node=127,time_s=4", ArmFaultKind::kQueueFull, 0},
            Case{"drop:time_s=4,duration_s=0.008", ArmFaultKind::kBusSilent, 0},
+           // Never three cycles in a row, and never all of them.
+           Case{"queue-full:node=1,id=rpdo,time_s=4,probability=0.3", ArmFaultKind::kSetpointUnsent,
+                1},
        }) {
     const FaultyRun run({wanted.spec});
     EXPECT_EQ(run.result.ending.reason, EndReason::kArmFault) << wanted.spec;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "executor/loop/controller.h"
 #include "tests/executor/bench.h"
 
@@ -52,6 +54,41 @@ TEST(StepByStep, AStepThatWaitsIsWatchedAndStopsWhenAsked) {
   stopped.run();
   EXPECT_EQ(stopped.controller.ending().reason, EndReason::kStopRequested) << stopped.ending();
   EXPECT_EQ(stopped.controller.runner().report_count(), 0U);
+}
+
+// In free air the wrench has no cause to move; in a contact it may have many.
+TEST(StepByStep, ATareThatDriftsWhileAStepWaitsInFreeAirIsNamed) {
+  Controller::Parameters parameters;
+  parameters.step_by_step = true;
+  for (const double rate_Nps : {0.0, 0.5}) {
+    Bench bench(touch_and_slide_plan(), parameters);
+    bench.run_until(State::kRunning);
+    for (int i = 0; i < 1000 && bench.controller.state() == State::kRunning; ++i) {
+      bench.arm.bias[2] += 2e-3 * rate_Nps;
+      ASSERT_TRUE(bench.step());
+    }
+    const bool drifts = rate_Nps > 0.0;
+    EXPECT_EQ(bench.controller.state() == State::kRunning, !drifts) << bench.ending();
+    EXPECT_EQ(bench.controller.ending().reason, drifts ? EndReason::kTareDrift : EndReason::kNone);
+    EXPECT_EQ(std::abs(bench.controller.ending().value) > bench.controller.ending().bound, drifts);
+  }
+}
+
+TEST(StepByStep, AWrenchThatMovesWhileAStepWaitsInAContactIsNoDrift) {
+  Controller::Parameters parameters;
+  parameters.step_by_step = true;
+  Bench bench(touch_and_slide_plan(), parameters);
+  bench.arm.walls.push_back({0, +1, 0.13});
+  bench.run_until(State::kRunning);
+  for (int i = 0; i < 20'000 && bench.controller.runner().report_count() == 0; ++i) {
+    bench.controller.allow_step();
+    ASSERT_TRUE(bench.step());
+  }
+  for (int i = 0; i < 1000; ++i) {
+    bench.arm.bias[2] += 1e-3;
+    ASSERT_TRUE(bench.step()) << bench.ending();
+    ASSERT_EQ(bench.controller.state(), State::kRunning) << bench.ending();
+  }
 }
 
 }  // namespace

@@ -189,6 +189,59 @@ TEST_F(ArmOutputAlone, HeartbeatsLeaveWhenDueAndAreNotMadeUpFor) {
   EXPECT_EQ(left_ms, (std::vector<std::int64_t>{0, 100, 200, 550, 650}));
 }
 
+/// A transmit queue that refuses what a node is to do.
+class RefusesSetpoints final : public sim::Disturbance {
+ public:
+  [[nodiscard]] SendResult admit(const CanFrame& frame, std::int64_t /*now_ns*/) noexcept override {
+    return frame.id == refused_id ? SendResult::kQueueFull : SendResult::kSent;
+  }
+  std::uint32_t refused_id = 0;
+};
+
+// Never three cycles in a row: the queue as a whole is not what is wrong.
+TEST_F(ArmOutputAlone, ASetpointThatNeverLeavesAgainAndAgainIsNamedByItsNode) {
+  RefusesSetpoints refuses;
+  bus.set_disturbance(&refuses);
+  hear_all(kEnabled);
+  supervision.begin(kNow_ns);
+  int refused = 0;
+  for (int cycle = 0; supervision.state() != ArmState::kFault && cycle < 100; ++cycle) {
+    refuses.refused_id = cycle % 2 == 0 ? 0x202 : 0;
+    refused += cycle % 2 == 0 ? 1 : 0;
+    output.send_setpoints(ArmRequest::kDisabled, false, {});
+    supervision.check_sending(master.status());
+  }
+  EXPECT_EQ(supervision.fault().kind, ArmFaultKind::kSetpointUnsent);
+  EXPECT_EQ(supervision.fault().node, 2);
+  EXPECT_EQ(refused, 6);
+}
+
+TEST_F(ArmOutputAlone, OneSetpointInAHundredMayStayBehindForEver) {
+  RefusesSetpoints refuses;
+  bus.set_disturbance(&refuses);
+  hear_all(kEnabled);
+  supervision.begin(kNow_ns);
+  for (int cycle = 0; cycle < 10'000; ++cycle) {
+    refuses.refused_id = cycle % 101 == 0 ? 0x202 : 0;
+    output.send_setpoints(ArmRequest::kDisabled, false, {});
+    supervision.check_sending(master.status());
+    ASSERT_NE(supervision.state(), ArmState::kFault) << cycle;
+  }
+}
+
+// An adapter that reads too slowly: what it took it dropped.
+TEST_F(ArmSupervisionAlone, FramesThatATransportDropsLaterCountAsRefused) {
+  supervision.begin(kNow_ns);
+  CanBusStatus status;
+  supervision.check_sending(status);
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    EXPECT_NE(supervision.state(), ArmState::kFault);
+    status.send_failures += 4;
+    supervision.check_sending(status);
+  }
+  EXPECT_EQ(supervision.fault().kind, ArmFaultKind::kQueueFull);
+}
+
 TEST_F(ArmOutputAlone, ABusThatIsGoneIsAFaultAtOnce) {
   supervision.begin(kNow_ns);
   bus.set_up(false);

@@ -318,14 +318,17 @@ TEST(CanopenArm, LateFeedbackIsNotTakenForThisCycles) {
   EXPECT_TRUE(gantry.arm.receive(gantry.now_ns, gantry.feedback));
 }
 
-TEST(CanopenArm, SetpointThatIsNoNumberRepeatsTheLastTarget) {
+TEST(CanopenArm, SetpointThatIsNoNumberStopsTheDrivesInItsOwnCycle) {
   GantryOnBus gantry;
   ASSERT_TRUE(gantry.prepare_and_enable());
   gantry.cycle(ArmRequest::kEnabled, {0.25, 0.0, 0.0});
   gantry.cycle(ArmRequest::kEnabled, {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
   gantry.step_nodes();
-  EXPECT_EQ(last_command(gantry, 0), (Bytes{0x0F, 0x00, 0x90, 0xD0, 0x03, 0x00}));
+  // Quick stop, to where the joint is.
+  EXPECT_EQ(last_command(gantry, 0), (Bytes{0x02, 0x00, 0x90, 0xD0, 0x03, 0x00}));
   EXPECT_EQ(gantry.arm.counters().invalid_setpoints, 1u);
+  EXPECT_EQ(gantry.arm.fault().kind, ArmFaultKind::kSetpointNotFinite);
+  EXPECT_EQ(gantry.arm.fault().node, 1);
 }
 
 TEST(CanopenArm, BusThatGoesDownIsAFaultAndPrepareRecovers) {

@@ -84,10 +84,15 @@ enum class FaultTarget : std::uint8_t {
   return target_of(kind) == FaultTarget::kBus;
 }
 
-/// It strikes single frames: its `frames` say which.
+/// It strikes frames once they are sent.
 [[nodiscard]] constexpr bool strikes_frames(FaultKind kind) {
   return kind == FaultKind::kDrop || kind == FaultKind::kDelay || kind == FaultKind::kDuplicate ||
          kind == FaultKind::kCorruptLength;
+}
+
+/// Its `frames` say which are meant.
+[[nodiscard]] constexpr bool chooses_frames(FaultKind kind) {
+  return strikes_frames(kind) || kind == FaultKind::kQueueFull;
 }
 
 enum class FrameKind : std::uint8_t {
@@ -121,7 +126,7 @@ struct Fault {
   double value = 0.0;        ///< see the kind
   std::uint64_t seed = 1;    ///< of the draws
   std::optional<FaultPhase> at = std::nullopt;  ///< unset: it waits for no phase
-  FrameKind frames = FrameKind::kAny;           ///< of those that strike frames
+  FrameKind frames = FrameKind::kAny;           ///< of those that choose frames
   std::uint32_t cob_id = 0;                     ///< of FrameKind::kOne
 };
 

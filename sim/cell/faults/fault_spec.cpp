@@ -106,7 +106,7 @@ static_assert(in_order());
 
 std::string keys_of(const Kind& kind) {
   std::string keys = "node, time_s, duration_s, probability, seed, at";
-  if (strikes_frames(kind.kind)) keys += ", id";
+  if (chooses_frames(kind.kind)) keys += ", id";
   if (kind.value_key != nullptr) keys += std::string(", ") + kind.value_key;
   return keys;
 }
@@ -169,7 +169,7 @@ class Parser {
       fault_.node = static_cast<std::uint8_t>(integer(key, value, kind.needs_node ? 1 : 0, 127));
     } else if (key == "at") {
       fault_.at = static_cast<FaultPhase>(one_of(key, value, kPhaseNames));
-    } else if (key == "id" && strikes_frames(kind.kind)) {
+    } else if (key == "id" && chooses_frames(kind.kind)) {
       take_id(key, value);
     } else if (key == "time_s") {
       fault_.time_s = number(key, value, 0.0, kTimeMax_s);

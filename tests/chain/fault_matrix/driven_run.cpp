@@ -97,7 +97,10 @@ DrivenRun::DrivenRun(const Ground& ground, const FaultKind& kind, const Strike& 
     : kind_(kind),
       strike_(strike),
       world_(altered(ground, kind, strike.phase)),
-      watch_(world_.cell, kind.spec.find("force") != std::string::npos,
+      // A drift is a force only when it has come to one.
+      watch_(world_.cell,
+             kind.spec.find("force") != std::string::npos &&
+                 kind.spec.find("drifting") == std::string::npos,
              [this] { return run_.result().truth; }),
       run_(world_.cell, world_.task, ground.planned.plan, options(ground), &watch_),
       third_(run_.bus().attach()),

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "shared/base/text.h"
+
 namespace tenon::tests {
 namespace {
 
@@ -15,15 +17,14 @@ const executor::FaultRow* arm(ArmFaultKind kind) { return fault_row(EndReason::k
 /// come to without it.
 Names stays_behind() {
   return {fault_row(EndReason::kFollowingError), fault_row(EndReason::kForceFault),
-          fault_row(EndReason::kTorqueFault), fault_row(EndReason::kPlanFailed)};
+          fault_row(EndReason::kPlanFailed)};
 }
 
-/// The servo moves the axis by what its encoder misreads: its own error, or what that does.
-Names jumps() {
-  return {arm(ArmFaultKind::kDriveFault),     fault_row(EndReason::kFollowingError),
-          fault_row(EndReason::kTareMoving),  fault_row(EndReason::kForceFault),
-          fault_row(EndReason::kTorqueFault), fault_row(EndReason::kSensorSaturated),
-          arm(ArmFaultKind::kSensorInvalid)};
+/// A zero that drifts is named for it while it is found; later for what the plan makes of a force
+/// that is none.
+Names drifts() {
+  return {fault_row(EndReason::kTareDrift), fault_row(EndReason::kPlanFailed),
+          fault_row(EndReason::kForceFault), fault_row(EndReason::kTorqueFault)};
 }
 
 /// As tenon-sim --fault brings it about.
@@ -62,10 +63,17 @@ std::vector<FaultKind> kinds_of_devices() {
       spec("force torn", "torn-force:duration_s=100", stale),
       spec("force stale", "stale-force:duration_s=100", stale),
       spec("force saturated", "saturated-force:duration_s=100",
-           {arm(ArmFaultKind::kSensorInvalid), fault_row(EndReason::kSensorSaturated)}),
+           {fault_row(EndReason::kSensorSaturated)}),
       spec("force beyond its limit", "forged-force:force_N=80",
            {fault_row(EndReason::kForceFault)}),
-      {"encoder jump", Act::kSpec, "encoder-jump:node=JOINT,JUMP", jumps(), false, true},
+      {"encoder jump",
+       Act::kSpec,
+       "encoder-jump:node=JOINT,JUMP",
+       {fault_row(EndReason::kEncoderJump)},
+       false,
+       true},
+      spec("force frozen", "frozen-force:duration_s=100", {fault_row(EndReason::kWrenchFrozen)}),
+      spec("force drifts", "drifting-force:duration_s=100,rate_Nps=20", drifts()),
       spec("drive does not follow", "frozen-drive:node=JOINT", behind),
       spec("brake failed", "brake-failure:node=VERTICAL", {fault_row(EndReason::kBrakeFailed)}),
   };
@@ -73,15 +81,13 @@ std::vector<FaultKind> kinds_of_devices() {
 
 std::vector<FaultKind> kinds_of_the_executor() {
   return {
-      {"setpoints not finite", Act::kNotFinite, "", stays_behind(), false, false},
-      {"SIGSTOP",
-       Act::kPause,
+      {"setpoints not finite",
+       Act::kNotFinite,
        "",
-       {arm(ArmFaultKind::kDriveState), arm(ArmFaultKind::kDriveFault),
-        arm(ArmFaultKind::kUnexpectedReset), arm(ArmFaultKind::kHeartbeatLost),
-        fault_row(EndReason::kOverruns)},
+       {arm(ArmFaultKind::kSetpointNotFinite)},
        false,
        false},
+      {"SIGSTOP", Act::kPause, "", {arm(ArmFaultKind::kDriveFault)}, false, false},
       {"SIGKILL", Act::kKill, "", {}, false, false},
       {"late wake-ups",
        Act::kLate,
@@ -104,6 +110,8 @@ std::vector<FaultKind> fault_kinds() {
   return all;
 }
 
+double jump_of(const Robot& robot) { return 2.0 * robot.joints.front().following_error_max; }
+
 std::string spec_for(const FaultKind& kind, const Robot& robot) {
   const bool turns = robot.joints.front().kind == Joint::Kind::kRevolute;
   const std::pair<const char*, std::string> words[] = {
@@ -111,8 +119,7 @@ std::string spec_for(const FaultKind& kind, const Robot& robot) {
       {"SENSOR", std::to_string(robot.sensor.node)},
       // The gantry's z, the other arm's shoulder.
       {"VERTICAL", std::to_string(robot.joints[turns ? 1 : 2].node)},
-      // Twice what the drive's following error allows.
-      {"JUMP", turns ? "jump_rad=0.04" : "jump_m=0.01"},
+      {"JUMP", format(turns ? "jump_rad=%g" : "jump_m=%g", jump_of(robot))},
   };
   std::string text = kind.spec;
   for (const auto& [word, value] : words) {

@@ -37,6 +37,10 @@ struct FaultKind {
 
 [[nodiscard]] std::vector<FaultKind> fault_kinds();
 
+/// By which an encoder that jumps misreads, m or rad: twice what its drive's following error
+/// allows.
+[[nodiscard]] double jump_of(const Robot& robot);
+
 /// The kind's spec for a robot.
 [[nodiscard]] std::string spec_for(const FaultKind& kind, const Robot& robot);
 

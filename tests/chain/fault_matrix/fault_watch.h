@@ -43,6 +43,8 @@ class FaultWatch final : public executor::CycleSink {
     if (struck_ && !behind_ && behind(r)) behind_ = cycles_;
     if (struck_) look_at_the_truth();
     const bool on = r.arm_state == ArmState::kEnabled && r.request == ArmRequest::kEnabled;
+    if (struck_ && on && !followed_) followed_ = cycles_;
+    if (r.state == executor::State::kTaring && !taring_) taring_ = cycles_;
     for (std::size_t i = 0; on && was_on_ && i < robot_.joints.size(); ++i) {
       const double way = std::abs(r.position_commanded[i] - commands_.front()[i]);
       const double most = 1e-6 * robot_.cycle_us * robot_.joints[i].speed_max;
@@ -67,6 +69,10 @@ class FaultWatch final : public executor::CycleSink {
     const executor::EndReason reason = row.reason;
     if (reason == kFollowingError) return behind_;
     if (reason == kBrakeFailed) return off_;
+    // Setpoints count from where drives follow them.
+    if (row.arm_fault == ArmFaultKind::kSetpointNotFinite) return followed_;
+    // Later than the tare's, drift is felt as a force.
+    if (reason == kTareDrift) return struck_ && taring_ >= struck_ ? taring_ : std::nullopt;
     if (row.arm_fault == ArmFaultKind::kDriveFault || row.arm_fault == ArmFaultKind::kDriveState) {
       return left_;
     }
@@ -122,7 +128,9 @@ class FaultWatch final : public executor::CycleSink {
   std::optional<std::int64_t> behind_;
   std::optional<std::int64_t> left_;
   std::optional<std::int64_t> pressed_;
+  std::optional<std::int64_t> taring_;
   std::optional<std::int64_t> tared_;
+  std::optional<std::int64_t> followed_;
   std::optional<std::int64_t> named_;
   std::optional<std::int64_t> off_;
 };
