@@ -122,7 +122,7 @@ class Fitting {
                  seconds, kContactSpeedMin_mps));
     }
     note(format(
-        "contact speed %g -> %.4g m/s: the peak force F_on + k_e v ((n + 1) T + tau_arm + M / D) "
+        "contact speed %g -> %.4g m/s: the peak force F_on + k_e v (2 (n + 2) T + tau_arm + M / D) "
         "= %g + %g * v * %.4g was %.3g N, now %g of the fault at %g N",
         speeds.contact_mps, lowered_mps, force_on_N, loop_.stiffness_Npm, seconds, peak_N,
         kPeakShare, cell_.force_fault_N));

@@ -24,6 +24,7 @@
 #include "executor/states/ending.h"
 #include "executor/states/state_machine.h"
 #include "shared/cell/cell.h"
+#include "shared/motion/stiff_contact.h"
 #include "shared/ports/arm.h"
 
 namespace tenon::executor {
@@ -68,8 +69,7 @@ class ControlTask {
   /// drives ran out of setpoints, stopped and go on, and the sensor feels the payload's inertia of
   /// a motion that nobody commanded.
   void distrust_samples() noexcept {
-    constexpr int kStopAndGo = 3;
-    supervision_.distrust_samples(kStopAndGo + cell_.robot.measurement_delay_cycles);
+    supervision_.distrust_samples(shaken_cycles(cell_.robot.measurement_delay_cycles));
   }
 
   [[nodiscard]] State state() const noexcept { return state_; }

@@ -7,6 +7,11 @@
 
 namespace tenon {
 
+/// For so many cycles guarded moves take no samples after one late wake-up or missing answer: the
+/// drives ran out of setpoints, stop and go on in three, and what the sensor felt of that comes
+/// `delay_cycles` later. @param delay_cycles n, age of a force sample when it is used
+[[nodiscard]] constexpr int shaken_cycles(int delay_cycles) { return 3 + delay_cycles; }
+
 /// The way from a force at the tool to the motion that answers it, and what it leans on.
 struct ContactLoop {
   /// k_e: force per commanded motion into the contact. The environment's own stiffness in series
@@ -18,8 +23,12 @@ struct ContactLoop {
 
   /// tau = (n + 1/2) T + tau_arm; half a cycle for the setpoint that is held.
   [[nodiscard]] double latency_s() const { return (delay_cycles + 0.5) * cycle_s + lag_s; }
-  /// (n + 1) T + tau_arm: the longest time from F_on at the tool to the stop's first effect.
-  [[nodiscard]] double blind_s() const { return (delay_cycles + 1) * cycle_s + lag_s; }
+  /// (n + 1) T + (n + 3) T + tau_arm: the longest time from F_on at the tool to the stop's first
+  /// effect, with a late wake-up just before the touch. More of them at one touch are the force
+  /// fault's.
+  [[nodiscard]] double blind_s() const {
+    return (delay_cycles + 1 + shaken_cycles(delay_cycles)) * cycle_s + lag_s;
+  }
 };
 
 /// Of a cell. k_e is the cell file's contact_stiffness_Npm, which by definition already is the
@@ -36,9 +45,9 @@ struct ContactLoop {
 [[nodiscard]] double mass_most_kg(const ContactLoop& loop, double damping_Nspm);
 
 /// What the force can rise to when the tool meets the contact at a speed, N: the larger of
-/// F_on + k_e v ((n + 1) T + tau_arm + M / D) and 1.5 F_on, with which a guarded move presses while
-/// it confirms a contact. The second counts for gentle touches alone. Measured against the virtual
-/// arm in tests/chain/contact_force_test.cpp.
+/// F_on + k_e v (2 (n + 2) T + tau_arm + M / D) and 1.5 F_on, with which a guarded move presses
+/// while it confirms a contact. The second counts for gentle touches alone. Measured against the
+/// virtual arm in tests/chain/contact_force_test.cpp.
 [[nodiscard]] double peak_force_N(const ContactLoop& loop, const Compliance& compliance,
                                   double force_on_N, double speed_mps);
 

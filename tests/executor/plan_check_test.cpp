@@ -51,13 +51,13 @@ TEST(PlanCheck, TooMuchMassForTheDampingIsRefused) {
 TEST(PlanCheck, APeakForceAboveTheCellsFaultIsRefused) {
   Plan plan = touch_and_slide_plan();
   plan.compliance.mass_kg = 3.0;
-  plan.parameter_sets[0].speeds.contact_mps = 0.2;
+  plan.parameter_sets[0].speeds.contact_mps = 0.1;
   plan.parameter_sets[0].speeds.approach_mps = 0.2;
-  // 6 + 5e4 * 0.2 * (0.004 + 0 + 0.002) = 66 N
+  // 6 + 5e4 * 0.1 * (0.012 + 0 + 0.002) = 76 N, of which 40 N are a late wake-up's
   EXPECT_EQ(
       refusal(plan, hand_made_cell()),
-      "parameter set 0: peak force F_on + k_e v ((n + 1) T + tau_arm + M / D) = 6 + 50000 * 0.2 "
-      "* (0.004 + 0 + 0.002) = 66 N, must be at most force_fault_N = 60 N");
+      "parameter set 0: peak force F_on + k_e v (2 (n + 2) T + tau_arm + M / D) = 6 + 50000 * 0.1 "
+      "* (0.012 + 0 + 0.002) = 76 N, must be at most force_fault_N = 60 N");
 }
 
 TEST(PlanCheck, AnOnThresholdInTheSensorsNoiseIsRefused) {
@@ -112,12 +112,12 @@ TEST(PlanCheck, ATurnIsHeldAgainstTheSameRulesWhereTheCellKnowsWhatItMeets) {
   EXPECT_EQ(refusal(plan, cell),
             "inertia = 0.02 kg m^2, must be at most D tau = 5 * 0.003 = 0.015 kg m^2");
   plan.compliance.inertia_kgm2 = 0.01;
-  plan.parameter_sets[0].speeds.contact_radps = 2.0;
-  // 0.6 + 1000 * 2 * (0.004 + 0.002)
+  plan.parameter_sets[0].speeds.contact_radps = 1.0;
+  // 0.6 + 1000 * 1 * (0.012 + 0.002)
   EXPECT_EQ(
       refusal(plan, cell),
-      "parameter set 0: peak torque T_on + k_e w ((n + 1) T + tau_arm + I / D) = 0.6 + 1000 * "
-      "2 * 0.006 = 12.6 Nm, must be at most torque_fault_Nm = 10 Nm");
+      "parameter set 0: peak torque T_on + k_e w (2 (n + 2) T + tau_arm + I / D) = 0.6 + 1000 * "
+      "1 * 0.014 = 14.6 Nm, must be at most torque_fault_Nm = 10 Nm");
 }
 
 TEST(PlanCheck, AnEndThatIsNotAboutTheGoalIsRefused) {
