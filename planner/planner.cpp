@@ -21,10 +21,12 @@ namespace tenon::planner {
 namespace {
 
 CellAssumptions assumptions_of(const Task& task, const PlannerOptions& options) {
-  if (options.assumptions) return *options.assumptions;
   CellAssumptions assumptions;
   assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
-  return assumptions;
+  if (options.assumptions) assumptions = *options.assumptions;
+  // As a plan file holds them, so that what is searched is what is certified.
+  const auto stored = [](double value) { return static_cast<double>(static_cast<float>(value)); };
+  return {stored(assumptions.contact_stiffness_Npm), stored(assumptions.latency_max_s)};
 }
 
 class Planning {
@@ -74,13 +76,10 @@ class Planning {
   /// Such a planner has nothing but its one particle.
   [[nodiscard]] bool is_baseline() const { return options_.method != PlanMethod::kMha; }
 
-  /// The method's particles, against contacts as stiff as the cell's.
+  /// The method's particles, in the cell.
   [[nodiscard]] Belief belief_at_start() const {
-    Belief belief = start_belief(task_, start_, options_.method);
-    for (Particle& particle : belief.particles) {
-      particle.physics.contact_stiffness_Npm = assumptions_.contact_stiffness_Npm;
-    }
-    return belief;
+    return in_cell(start_belief(task_, start_, options_.method), assumptions_.contact_stiffness_Npm,
+                   assumptions_.latency_max_s);
   }
 
   Attractors guides_from(const Belief& start) {

@@ -33,9 +33,7 @@ std::vector<Vector6> SearchedGraph::displacements(const std::vector<PathEdge>& p
 std::optional<std::size_t> SearchedGraph::learn(const Refutation& refutation,
                                                 const std::vector<PathEdge>& path) {
   std::vector<Particle>& particles = belief_.particles;
-  Particle start = refutation.chain.start;
-  // The chain has it from the plan's bytes, which are not as precise.
-  start.physics.contact_stiffness_Npm = particles.front().physics.contact_stiffness_Npm;
+  const Particle& start = refutation.chain.start;
   const auto known = std::find_if(particles.begin(), particles.end(),
                                   [&](const Particle& p) { return same_start(p, start); });
   if (known == particles.end()) {

@@ -73,6 +73,16 @@ Belief start_belief(const Task& task, const Start& start, PlanMethod method) {
   return method == PlanMethod::kMha ? cross_polytope(task, start) : single_particle(task, start);
 }
 
+Belief in_cell(Belief belief, double contact_stiffness_Npm, double latency_max_s) {
+  bool late = false;
+  for (Particle& particle : belief.particles) {
+    particle.physics.contact_stiffness_Npm = contact_stiffness_Npm;
+    particle.physics.latency_s = late ? latency_max_s : 0.0;
+    late = !late;
+  }
+  return belief;
+}
+
 Pose mean_pose(const Belief& belief) {
   Pose mean;
   for (const Particle& particle : belief.particles) mean.position_m += particle.tool().position_m;
@@ -110,6 +120,7 @@ void append_cell(const Particle& particle, double cell_m, double cell_rad,
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.friction));
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.contact_stiffness_Npm));
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.oversize_m));
+  key.push_back(std::bit_cast<std::int64_t>(particle.physics.latency_s));
 }
 
 BeliefKey identity(const Belief& belief) {

@@ -42,6 +42,10 @@ struct Metric {
 /// What a method plans for: all of the cross-polytope, or the single particle.
 [[nodiscard]] Belief start_belief(const Task& task, const Start& start, PlanMethod method);
 
+/// The belief in a cell: its contact stiffness, and of its latency the two extremes, none and the
+/// longest, in turns. The first particle, and so a single one, has none.
+[[nodiscard]] Belief in_cell(Belief belief, double contact_stiffness_Npm, double latency_max_s);
+
 /// Of the tools in the task frame as it really stands: mean position, and the rotation from which
 /// the rotation vectors to all others sum up to zero.
 [[nodiscard]] Pose mean_pose(const Belief& belief);

@@ -61,7 +61,8 @@ void keep_earliest(VariantRun& run, const Disagreement& found) {
 void judge(VariantRun& run, const VariantRun& reference, const Task& task, std::size_t last_step) {
   run.holds = true;
   const bool same_physics = run.variant.friction == reference.variant.friction &&
-                            run.variant.oversize_m == reference.variant.oversize_m;
+                            run.variant.oversize_m == reference.variant.oversize_m &&
+                            run.variant.latency_s == reference.variant.latency_s;
   for (std::size_t p = 0; p < run.chains.size(); ++p) {
     const Chain& chain = run.chains[p];
     const Chain& planned = reference.chains[p];
@@ -103,15 +104,16 @@ double cost_of(const std::vector<Chain>& chains, const Task& task) {
 
 }  // namespace
 
-std::vector<CertificationVariant> certification_variants(const Task& task, PlanMethod method) {
+std::vector<CertificationVariant> certification_variants(const Task& task, const Plan& plan) {
   const std::int64_t step_us = task.rollout_step_us;
   std::vector<CertificationVariant> variants = {
-      {"as planned", std::nullopt, std::nullopt, step_us},
-      {"half the integration step", std::nullopt, std::nullopt, step_us / 2}};
-  if (method == PlanMethod::kMha) {
-    variants.push_back({"lowest friction", task.friction.low, std::nullopt, step_us});
-    variants.push_back({"highest friction", task.friction.high, std::nullopt, step_us});
-    if (task.oversize_m > 0.0) variants.push_back({"as drawn", std::nullopt, 0.0, step_us});
+      {"as planned", {}, {}, {}, step_us}, {"half the integration step", {}, {}, {}, step_us / 2}};
+  if (plan.method == PlanMethod::kMha) {
+    variants.push_back({"lowest friction", task.friction.low, {}, {}, step_us});
+    variants.push_back({"highest friction", task.friction.high, {}, {}, step_us});
+    if (task.oversize_m > 0.0) variants.push_back({"as drawn", {}, 0.0, {}, step_us});
+    variants.push_back({"no latency", {}, {}, 0.0, step_us});
+    variants.push_back({"longest latency", {}, {}, plan.latency_max_s, step_us});
   }
   return variants;
 }
@@ -172,11 +174,12 @@ Certification certify(std::span<const std::uint8_t> bytes, const Task& task, Rol
   }
   const Plan& plan = *decoded.plan;
   check_same_task(plan, task);
-  const Belief belief = start_belief(task, start_of(plan, task), plan.method);
+  const Belief belief = in_cell(start_belief(task, start_of(plan, task), plan.method),
+                                plan.contact_stiffness_Npm, plan.latency_max_s);
   const std::size_t particles = belief.particles.size();
 
   Certification certification;
-  for (const CertificationVariant& variant : certification_variants(task, plan.method)) {
+  for (const CertificationVariant& variant : certification_variants(task, plan)) {
     certification.runs.push_back({variant, std::vector<Chain>(particles), false, {}});
   }
   pool.run(certification.runs.size() * particles, [&](Rollout& rollout, std::size_t i) {
@@ -184,7 +187,7 @@ Certification certify(std::span<const std::uint8_t> bytes, const Task& task, Rol
     Particle start = belief.particles[i % particles];
     start.physics.friction = run.variant.friction.value_or(start.physics.friction);
     start.physics.oversize_m = run.variant.oversize_m.value_or(start.physics.oversize_m);
-    start.physics.contact_stiffness_Npm = plan.contact_stiffness_Npm;
+    start.physics.latency_s = run.variant.latency_s.value_or(start.physics.latency_s);
     run.chains[i % particles] = run_chain(rollout, plan, start, run.variant.step_us);
   });
   const std::size_t last_step = plan.steps.empty() ? 0 : plan.steps.size() - 1;

@@ -19,14 +19,15 @@ struct CertificationVariant {
   std::string name;
   std::optional<double> friction;    ///< of every particle; empty: each its own
   std::optional<double> oversize_m;  ///< likewise
+  std::optional<double> latency_s;   ///< likewise
   std::int64_t step_us = 0;
 };
 
 /// As planned (with the held part as large as it may be), at half the integration step, at the
-/// friction extremes, and with the part as drawn. A baseline, which knows of no uncertainty, has
-/// planned for the first two alone.
+/// friction extremes, with the part as drawn, and at the extremes of latency. A baseline, which
+/// knows of no uncertainty, has planned for the first two alone.
 [[nodiscard]] std::vector<CertificationVariant> certification_variants(const Task& task,
-                                                                       PlanMethod method);
+                                                                       const Plan& plan);
 
 /// Where and why a variant does not hold.
 struct Disagreement {

@@ -13,13 +13,16 @@ constexpr int kAttempts = 1000;
 
 double reach_sigmas(const Task& task) { return task.particle_sigmas + 1.0; }
 
-/// Lowest and highest friction with the part as large as it may be, then as drawn where that is
-/// something else.
+/// Lowest and highest friction, no latency and the longest, with the part as large as it may be,
+/// then as drawn where that is something else.
 std::vector<PhysicalParameters> corners(const Plan& plan, const Task& task) {
   std::vector<PhysicalParameters> all;
   for (const double friction : {task.friction.low, task.friction.high}) {
-    all.push_back({friction, plan.contact_stiffness_Npm, task.oversize_m});
-    if (task.oversize_m > 0.0) all.push_back({friction, plan.contact_stiffness_Npm, 0.0});
+    for (const double latency_s : {0.0, plan.latency_max_s}) {
+      all.push_back({friction, plan.contact_stiffness_Npm, task.oversize_m, latency_s});
+      if (task.oversize_m == 0.0) continue;
+      all.push_back({friction, plan.contact_stiffness_Npm, 0.0, latency_s});
+    }
   }
   return all;
 }
@@ -87,6 +90,7 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
                                       Rollout& rollout) {
   const std::vector<PhysicalParameters> extremes = corners(plan, task);
   Random random(seed);
+  Random late(stream_seed(seed, "latency"));
   std::vector<JudgedStart> starts;
   for (std::size_t i = 0; i < count; ++i) {
     JudgedStart drawn = draw_place(random, task, start, rollout);
@@ -94,6 +98,7 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
     p.contact_stiffness_Npm = plan.contact_stiffness_Npm;
     p.friction = task.friction.low + random.uniform() * (task.friction.high - task.friction.low);
     if (task.oversize_m > 0.0) p.oversize_m = random.uniform() * task.oversize_m;
+    p.latency_s = late.uniform() * plan.latency_max_s;
     const bool at_corner = physics == DrawnPhysics::kCorners && i % 2 == 1;
     if (at_corner) p = extremes[i / 2 % extremes.size()];
     starts.push_back(drawn);

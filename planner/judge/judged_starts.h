@@ -15,7 +15,7 @@ struct JudgedStart {
   double mahalanobis = 0.0;  ///< how far out it is, standard deviations
 };
 
-/// What of friction and size the draws have.
+/// What of friction, size and latency the draws have.
 enum class DrawnPhysics : std::uint8_t {
   kEven,     ///< drawn evenly from their ranges
   kCorners,  ///< every second draw at one of the corners of these ranges, in turn
@@ -29,7 +29,8 @@ enum class DrawnPhysics : std::uint8_t {
                                                     Rollout& rollout);
 
 /// On the rim of the particles' reach, c_p standard deviations out, along every uncertain
-/// coordinate both ways and to every corner between them; each at all corners of friction and size.
+/// coordinate both ways and to every corner between them; each at all corners of friction, size and
+/// latency.
 [[nodiscard]] std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task,
                                                      const Start& start, Rollout& rollout);
 

@@ -34,7 +34,8 @@ std::optional<Refutation> missed_corner(std::span<const Draw> corners, const Tas
 }
 
 std::string corner_name(const PhysicalParameters& corner, const Task& task) {
-  std::string name = format("friction %g", corner.friction);
+  std::string name =
+      format("friction %g, latency %.1f ms", corner.friction, 1e3 * corner.latency_s);
   if (task.oversize_m <= 0.0) return name;
   if (corner.oversize_m <= 0.0) return name + ", the part as drawn";
   return name + format(", the part %g mm larger than drawn", 1e3 * corner.oversize_m);

@@ -26,11 +26,11 @@ struct Refutation {
 [[nodiscard]] std::optional<Refutation> missed_draw(std::span<const Draw> draws,
                                                     double particle_sigmas);
 
-/// The first start at a corner of friction and size that missed the goal, by name.
+/// The first start at a corner of friction, size and latency that missed the goal, by name.
 [[nodiscard]] std::optional<Refutation> missed_corner(std::span<const Draw> corners,
                                                       const Task& task);
 
-/// "friction 0.6, the part 0.5 mm larger than drawn", for people.
+/// "friction 0.6, latency 7.0 ms, the part 0.5 mm larger than drawn", for people.
 [[nodiscard]] std::string corner_name(const PhysicalParameters& corner, const Task& task);
 
 }  // namespace tenon::planner

@@ -110,7 +110,12 @@ std::string estimate_text(const Validation& validation, const Task& task) {
 }
 
 std::string corners_text(const Validation& validation, const Task& task) {
-  std::string physics = format("friction %g and %g", task.friction.low, task.friction.high);
+  double latency_s = 0.0;
+  for (const Draw& corner : validation.corners) {
+    latency_s = std::max(latency_s, corner.chain.start.physics.latency_s);
+  }
+  std::string physics = format("friction %g and %g, latency 0 and %.1f ms", task.friction.low,
+                               task.friction.high, 1e3 * latency_s);
   if (task.oversize_m > 0.0) {
     physics += format(", the part as drawn and %g mm larger", 1e3 * task.oversize_m);
   }

@@ -108,7 +108,7 @@ void expect_good(const Task& task, const std::vector<std::uint8_t>& bytes,
       draws.within(task.particle_sigmas));
   EXPECT_LE(bytes.size(), 2048U);
   EXPECT_GE(5 * draws.at_goal_within(task.particle_sigmas), 4 * draws.within(task.particle_sigmas));
-  EXPECT_EQ(certification.runs.size(), task.oversize_m > 0.0 ? 5U : 4U);
+  EXPECT_EQ(certification.runs.size(), task.oversize_m > 0.0 ? 7U : 6U);
   for (const VariantRun& run : certification.runs) {
     for (const Chain& chain : run.chains) {
       const Vector3 off_m = chain.end().position_m - task.goal.position_m;

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "tests/planner/room_task.h"
 
@@ -15,6 +17,21 @@ Particle at(double x, double y, const Vector3& turn_rad = Vector3::Zero()) {
   particle.pose.position_m = {x, y, 0.0};
   particle.pose.orientation = rotation_of(turn_rad);
   return particle;
+}
+
+TEST(Belief, InACellEveryPairingOfFrictionAndLatencyStandsAmongTheParticles) {
+  const Task task = room_task();
+  const Belief belief = in_cell(cross_polytope(task, task.starts.front()), 3e4, 0.008);
+  std::set<std::pair<double, double>> pairings;
+  for (const Particle& particle : belief.particles) {
+    EXPECT_EQ(particle.physics.contact_stiffness_Npm, 3e4);
+    pairings.emplace(particle.physics.friction, particle.physics.latency_s);
+  }
+  const std::set<std::pair<double, double>> expected = {{task.friction.low, 0.0},
+                                                        {task.friction.low, 0.008},
+                                                        {task.friction.high, 0.0},
+                                                        {task.friction.high, 0.008}};
+  EXPECT_EQ(pairings, expected);
 }
 
 TEST(Belief, ParticlesSitOnTheTipsOfTheCrossPolytopeAndNotInItsCentre) {

@@ -191,6 +191,30 @@ TEST(Planner, IsJudgedByDrawsThatItsSearchHasNotSeen) {
   }
 }
 
+TEST(Planner, APlanThatDiesByTheArmsLatencyIsRefuted) {
+  const Task task = room_task();
+  const Plan plan = *planned(task).plan;
+  WallRollout::World world = room();
+  world.x_gain_late_mps = 1.0;  // 10 mm at the 10 ms that the plan allows
+  RolloutPool pool(WallRollout(world), 1);
+  const Certification certification = certify(encode_plan(plan), task, pool);
+  for (const VariantRun& run : certification.runs) {
+    if (run.variant.name == "no latency") {
+      EXPECT_TRUE(run.holds);
+    }
+    if (run.variant.name == "longest latency") {
+      EXPECT_FALSE(run.holds);
+    }
+  }
+  EXPECT_EQ(certification.runs.size(), 6U);
+  PlannerOptions options;
+  options.rounds_max = 4;
+  EXPECT_FALSE(planned(task, world, options).plan.has_value());
+  // A cell that is at once may have one.
+  options.assumptions = CellAssumptions{5e4, 0.0};
+  EXPECT_TRUE(planned(task, world, options).plan.has_value());
+}
+
 TEST(Planner, PhysicsThatChangesAtHalfTheStepIsRefutedAndSearchedAround) {
   const Task task = room_task();
   WallRollout::World world = room();

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
-#include <utility>
 
 #include "tests/planner/room_plan.h"
 
@@ -26,8 +26,8 @@ TEST(Validation, TheRimStandsWhereDrawingEndsAndCountsInNoStatistic) {
   const Validation& validation = report.validation;
   const Start& start = task.starts.front();
   const double sigmas = task.particle_sigmas + 1.0;
-  // Four tips and four corners, each slippery and rough.
-  ASSERT_EQ(validation.rim.size(), 16U);
+  // Four tips and four corners, each slippery and rough, on an arm at once and late.
+  ASSERT_EQ(validation.rim.size(), 32U);
   for (const Draw& draw : validation.rim) {
     EXPECT_EQ(draw.mahalanobis, sigmas);
     const Vector3 off_m = draw.chain.start.pose.position_m - start.pose.position_m;
@@ -62,17 +62,23 @@ TEST(Validation, CornersStandOnTheRimOfTheReachWithEveryExtremeOfPhysics) {
   const PlanReport report = planned_by(20, task);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
   const std::vector<Draw>& corners = report.validation.corners;
-  ASSERT_EQ(corners.size(), 32U);  // four tips and four corners, at two frictions and two sizes
-  EXPECT_EQ(arrived(corners), 32U);
-  std::set<std::pair<double, double>> physics;
+  // Four tips and four corners, at two frictions, two sizes and two latencies.
+  ASSERT_EQ(corners.size(), 64U);
+  EXPECT_EQ(arrived(corners), 64U);
+  std::set<std::array<double, 3>> physics;
   for (const Draw& draw : corners) {
     EXPECT_EQ(draw.mahalanobis, task.particle_sigmas);
-    physics.emplace(draw.chain.start.physics.friction, draw.chain.start.physics.oversize_m);
+    const PhysicalParameters& one = draw.chain.start.physics;
+    physics.insert({one.friction, one.oversize_m, one.latency_s});
   }
-  const std::set<std::pair<double, double>> expected = {{task.friction.low, 0.0},
-                                                        {task.friction.low, 1e-3},
-                                                        {task.friction.high, 0.0},
-                                                        {task.friction.high, 1e-3}};
+  std::set<std::array<double, 3>> expected;
+  for (const double friction : {task.friction.low, task.friction.high}) {
+    for (const double oversize_m : {0.0, 1e-3}) {
+      for (const double latency_s : {0.0, report.plan->latency_max_s}) {
+        expected.insert({friction, oversize_m, latency_s});
+      }
+    }
+  }
   EXPECT_EQ(physics, expected);
 }
 
@@ -118,7 +124,7 @@ TEST(Validation, OtherRulesDecideOnTheSameMovesWithoutSimulatingThem) {
     EXPECT_EQ(draw.chain.moves.size(), 1U);
     EXPECT_FALSE(draw.chain.failure.empty());
   }
-  EXPECT_EQ(arrived(decided_by(*report.plan, task, report.validation.corners)), 16U);
+  EXPECT_EQ(arrived(decided_by(*report.plan, task, report.validation.corners)), 32U);
 }
 
 TEST(Validation, AStartOnTheRimThatCollidesIsLeftOut) {
@@ -128,7 +134,7 @@ TEST(Validation, AStartOnTheRimThatCollidesIsLeftOut) {
   task.starts.front().sigma[0] = (0.5 - 0.23 - 2e-3) / 3.0;
   const PlanReport report = planned_by(20, task);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
-  EXPECT_EQ(report.validation.rim.size(), 14U);
+  EXPECT_EQ(report.validation.rim.size(), 28U);
 }
 
 }  // namespace

@@ -15,6 +15,9 @@ RolloutResult WallRollout::simulate(const Particle& particle, const MoveParamete
   }
   Vector3 way_m = move.displacement.head<3>();
   if (step_us < world_.short_step_us) way_m.x() *= world_.x_gain_at_short_step;
+  if (way_m.x() != 0.0) {
+    way_m.x() += std::copysign(world_.x_gain_late_mps * particle.physics.latency_s, way_m.x());
+  }
   ContactSignature signature = particle.signature;
   for (int axis = 0; axis < 3; ++axis) {
     const int environment = signature.sign(axis);

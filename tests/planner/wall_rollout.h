@@ -23,6 +23,8 @@ class WallRollout final : public Rollout {
     /// Displacements along x get this much longer at steps of less than shortest_step_us.
     double x_gain_at_short_step = 1.0;
     std::int64_t short_step_us = 0;
+    /// Displacements along x get this much longer for every second of the particle's latency.
+    double x_gain_late_mps = 0.0;
     /// Between these y the low wall along x stands this much farther in.
     double ledge_m = 0.0;
     double ledge_from_y_m = 0.0;

@@ -1,6 +1,8 @@
 #include "sim/physics/rollout/ode_rollout.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "sim/physics/contacts/contact_law.h"
 #include "sim/physics/rollout/compliant_tool.h"
@@ -24,6 +26,44 @@ bool turns(const MoveParameters& move) {
   return (move.compliance.compliant_axes & kRotations) != 0 ||
          !move.displacement.tail<3>().isZero(0.0);
 }
+
+/// Rounded up to whole steps of the task's, so that half of them see the same.
+std::size_t steps_of(double latency_s, std::int64_t task_step_us, std::int64_t step_us) {
+  constexpr double kRounding = 1e-6;  // of a value that a plan file holds
+  const double whole = std::ceil((1.0 - kRounding) * latency_s /
+                                 (kMicrosecond_s * static_cast<double>(task_step_us)));
+  return static_cast<std::size_t>(static_cast<std::int64_t>(whole) * task_step_us / step_us);
+}
+
+/// What a move sees of the plant, so many steps late.
+class LateView {
+ public:
+  void begin(std::size_t steps_late) {
+    ring_.resize(steps_late + 1);
+    now_ = 0;
+    full_ = false;
+  }
+
+  /// Takes what is, and shows what was; as long as nothing has come through, `input` is left.
+  void pass(const Pose& pose, const Vector6& wrench, GuardedMove::Input& input) {
+    ring_[now_] = {pose, wrench};
+    now_ = (now_ + 1) % ring_.size();
+    full_ = full_ || now_ == 0;
+    if (!full_) return;
+    input.pose = ring_[now_].pose;
+    input.wrench = ring_[now_].wrench;
+    input.wrench_fresh = true;
+  }
+
+ private:
+  struct Seen {
+    Pose pose;
+    Vector6 wrench;
+  };
+  std::vector<Seen> ring_;
+  std::size_t now_ = 0;  ///< to be written next: the oldest once the ring is full
+  bool full_ = false;
+};
 
 }  // namespace
 
@@ -103,6 +143,7 @@ struct OdeRollout::Physics {
   CompliantTool tool;
   LockedContacts locked;
   ContactLaw law;
+  LateView view;
   bool turning = true;
   Vector6 wrench = Vector6::Zero();
 };
@@ -117,6 +158,7 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
   const double step_s = kMicrosecond_s * static_cast<double>(step_us);
   const std::uint64_t messages_before = ode_messages();
   p.begin(particle, move);
+  p.view.begin(steps_of(particle.physics.latency_s, task_.rollout_step_us, step_us));
 
   GuardedMove guarded(move, particle.signature);
   GuardedMove::Input input;
@@ -133,9 +175,7 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
       return result;
     }
     input.time_ns += step_us * kMicrosecond_ns;
-    input.pose = p.tool.pose();
-    input.wrench = p.wrench;
-    input.wrench_fresh = true;
+    p.view.pass(p.tool.pose(), p.wrench, input);
   }
   if (ode_messages() != messages_before) {
     result.failure = "the contact solver did not converge";
