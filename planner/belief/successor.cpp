@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "planner/belief/edge_rest.h"
+
 namespace tenon::planner {
 namespace {
 
@@ -30,8 +32,10 @@ SuccessorEngine::End SuccessorEngine::simulate(Rollout& rollout, const Job& job)
   move.displacement = job.displacement;
   const RolloutResult result = rollout.simulate(job.particle, move, step_us_);
   if (!result.valid || result.move.outcome == Outcome::kTimeout) return std::nullopt;
-  return Particle{result.move.pose, result.move.signature, job.particle.physics,
-                  job.particle.environment};
+  const Particle end{result.move.pose, result.move.signature, job.particle.physics,
+                     job.particle.environment};
+  if (rests_at_edge(end, move.compliance.compliant_axes, rollout)) return std::nullopt;
+  return end;
 }
 
 void SuccessorEngine::refuse(const Particle& particle, const Vector6& displacement) {

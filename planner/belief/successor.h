@@ -21,14 +21,15 @@ class SuccessorEngine {
   struct Counters {
     std::uint64_t rollouts = 0;   ///< simulated moves
     std::uint64_t memo_hits = 0;  ///< moves that were already known
-    std::uint64_t failures = 0;   ///< rollouts whose physics failed, or that timed out
+    std::uint64_t failures = 0;   ///< moves that do not exist
   };
 
   /// @param pool must outlive this  @param move everything of a move but its displacement
   SuccessorEngine(RolloutPool& pool, const MoveParameters& move, std::int64_t step_us);
 
-  /// One belief for each primitive, in order. Empty where a particle's rollout failed or timed out:
-  /// such an edge does not exist. All rollouts that are missing run as one batch.
+  /// One belief for each primitive, in order. Empty where a particle's rollout failed or timed out,
+  /// or left it resting at an edge: such a move does not exist. All rollouts that are missing run
+  /// as one batch.
   [[nodiscard]] std::vector<std::optional<Belief>> successors(
       const Belief& belief, std::span<const Primitive> primitives);
 
