@@ -136,6 +136,9 @@ int parse_and_evaluate(int argc, char** argv) {
   app.add_option("--plan", line.plans, "plan file; several meet the same worlds")->required();
   app.add_option("--experiment", line.experiment,
                  "ranges to draw from how the world differs from what task and cell file say");
+  app.add_option("--corner", line.corner,
+                 "friction low or high and the held part drawn or largest, of what the task leaves "
+                 "open, instead of what --experiment draws of them: high,largest");
   app.add_option("-n", line.count, "number of runs of each plan")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();

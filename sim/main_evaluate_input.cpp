@@ -14,6 +14,7 @@
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/task/find_start.h"
+#include "sim/evaluation/corner.h"
 
 namespace tenon {
 namespace {
@@ -28,6 +29,7 @@ std::string replay_of(const EvaluateLine& line) {
   std::string text = "tenon-evaluate --cell " + shell_word(line.cell) + " --task " +
                      shell_word(line.task) + " --seed " + std::to_string(line.seed);
   if (!line.experiment.empty()) text += " --experiment " + shell_word(line.experiment);
+  if (!line.corner.empty()) text += " --corner " + line.corner;
   return text;
 }
 
@@ -72,6 +74,7 @@ std::string identity_of(const EvaluateLine& line, const Task& task) {
   identity["task"] = format("%016llx", static_cast<unsigned long long>(task.hash));
   identity["experiment"] =
       line.experiment.empty() ? "" : hash_of(config::read_file(line.experiment));
+  identity["corner"] = line.corner;
   identity["seed"] = line.seed;
   return identity.dump();
 }
@@ -97,6 +100,10 @@ sim::Evaluation evaluation_of(const EvaluateLine& line, const Cell& cell) {
   evaluation.task = load_task(line.task);
   evaluation.cell = cell.name;
   if (!line.experiment.empty()) evaluation.ranges = load_experiment(line.experiment);
+  if (!line.corner.empty()) {
+    evaluation.ranges =
+        sim::at_corner(evaluation.ranges.value_or(WorldRanges{}), line.corner, evaluation.task);
+  }
   evaluation.seed = line.seed;
   evaluation.replay = replay_of(line);
   for (const std::string& by : line.by) evaluation.by.push_back(sim::parse_bins(by));

@@ -20,6 +20,7 @@ struct EvaluateLine {
   std::string task;
   std::vector<std::string> plans;
   std::string experiment;
+  std::string corner;
   std::size_t count = 100;
   std::uint64_t seed = 0;
   std::size_t threads = all_cores();
