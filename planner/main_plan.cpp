@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -36,6 +37,7 @@ struct Arguments {
   std::size_t threads = all_cores();
   std::size_t draws = planner::kDrawsMin;
   std::optional<double> time_limit_s;
+  double improve_s = 0.0;
   bool verbose = false;
 };
 
@@ -56,6 +58,10 @@ void describe(CLI::App& app, Arguments& a) {
       ->default_str("all cores");
   app.add_option("--time-limit", a.time_limit_s,
                  "Seconds after which no path is searched for any more (the task's)");
+  app.add_option("--improve", a.improve_s,
+                 "Seconds to look for better plans once there is one; each is printed and written")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->default_str("0");
   app.add_option("--draws", a.draws, "Random starts of the validation")
       ->check(CLI::Range(planner::kDrawsMin, planner::kDrawsMax))
       ->capture_default_str();
@@ -75,6 +81,18 @@ const Start& chosen_start(const Task& task, const std::string& name) {
   if (const Start* start = find_start(task, name)) return *start;
   throw InputError("--start " + name + ": task '" + task.name + "' has only the starts " +
                    start_names(task));
+}
+
+/// Writes every plan as it comes, so that who stops the program has the best one so far.
+void write_each(const Arguments& a, planner::PlannerOptions& options,
+                const std::function<double()>& now_s) {
+  options.planned = [&a, now_s](const planner::PlanReport& report) {
+    write_file(a.output, report.bytes);
+    if (a.improve_s == 0.0 || a.json == "-") return;
+    std::printf("%6.1f s: %zu steps, %s", now_s(), report.plan->steps.size(),
+                planner::cost_text(*report.plan).c_str());
+    std::fflush(stdout);
+  };
 }
 
 int run(const Arguments& a) {
@@ -109,6 +127,8 @@ int run(const Arguments& a) {
 
   const std::int64_t began_ns = monotonic_now_ns();
   const auto now_s = [&] { return 1e-9 * static_cast<double>(monotonic_now_ns() - began_ns); };
+  options.improve_s = a.improve_s;
+  write_each(a, options, now_s);
   planner::PlanReport report = planner::make_plan(task, start, rollout, options, now_s);
   report.adapted = std::move(adapted);
 
@@ -123,7 +143,6 @@ int run(const Arguments& a) {
                  planner::to_string(report.status), report.reason.c_str());
     return 1;
   }
-  write_file(a.output, report.bytes);
   if (a.json != "-") std::fputs(planner::summary(report, task, a.output).c_str(), stdout);
   return 0;
 }

@@ -29,6 +29,16 @@ CellAssumptions assumptions_of(const Task& task, const PlannerOptions& options) 
   return {stored(assumptions.contact_stiffness_Npm), stored(assumptions.latency_max_s)};
 }
 
+// By how much of what they exceed 1 by the weights are lowered, and where they become 1.
+constexpr double kLowered = 0.5;
+constexpr double kLeastShare = 0.1;
+
+std::vector<Vector6> displacements_of(const Plan& plan) {
+  std::vector<Vector6> displacements;
+  for (const Step& step : plan.steps) displacements.push_back(step.displacement);
+  return displacements;
+}
+
 class Planning {
  public:
   Planning(const Task& task, const Start& start, const Rollout& rollout,
@@ -57,10 +67,14 @@ class Planning {
     }
     searched_.emplace(task_, start, guides_from(start), succ_);
     for (std::size_t round = 0; round < options_.rounds_max; ++round) {
-      search();
+      search({task_.w1, task_.w2, options_.expansions_max}, [this] { return out_of_time(); });
       if (!report_.search.has_path) return without_path();
       Judgement judgement = judge_.judge(searched_->displacements(report_.search.path));
-      if (auto* judged = std::get_if<JudgedPlan>(&judgement)) return planned(std::move(*judged));
+      if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
+        keep(std::move(*judged), report_.search);
+        improve();
+        return ended(PlanStatus::kPlanned, "");
+      }
       learn(std::get<Refutation>(judgement));
     }
     return ended(PlanStatus::kNotCertified, every_path_refuted(report_, options_.rounds_max));
@@ -94,9 +108,7 @@ class Planning {
     return attractors;
   }
 
-  void search() {
-    const SearchParameters parameters{task_.w1, task_.w2, options_.expansions_max};
-    const auto stop = [this] { return out_of_time(); };
+  void search(const SearchParameters& parameters, const std::function<bool()>& stop) {
     BeliefGraph& graph = searched_->graph();
     report_.search = timed(now_s_, report_.times.search_s, [&] {
       return options_.method == PlanMethod::kContactGreedy
@@ -125,14 +137,64 @@ class Planning {
                  no_path(status, report_, searched_->graph(), task_, options_.expansions_max));
   }
 
-  PlanReport planned(JudgedPlan judged) {
-    const double bound = report_.search.bound;
-    judged.plan.bound = std::isfinite(bound) ? bound : 0.0;
+  void keep(JudgedPlan judged, const SearchResult& search) {
+    judged.plan.bound = std::isfinite(search.bound) ? search.bound : 0.0;
     report_.bytes = encode_plan(judged.plan);
     report_.plan = through_bytes(judged.plan);
     report_.certification = std::move(judged.certification);
     report_.validation = std::move(judged.estimate);
-    return ended(PlanStatus::kPlanned, "");
+    if (options_.planned) options_.planned(report_);
+  }
+
+  /// Ever lower weights while the budget lasts, the last of them 1. What refutes a path on the way
+  /// is learnt as before; the plan that is there stays unless a cheaper one holds, or its bound can
+  /// be told more closely.
+  void improve() {
+    const double until_s = now_s_() + options_.improve_s;
+    const auto stop = [&] { return now_s_() >= until_s; };
+    SearchResult kept = report_.search;
+    double share = 1.0;  // of what the task's weights exceed 1 by
+    for (std::size_t round = 0; options_.improve_s > 0.0 && !stop(); ++round) {
+      const bool refuted = round > 0 && refuted_;
+      refuted_ = false;
+      if (!refuted && share == 0.0) break;
+      if (!refuted) share = share > kLeastShare ? kLowered * share : 0.0;
+      search(
+          {1.0 + share * (task_.w1 - 1.0), 1.0 + share * (task_.w2 - 1.0), options_.expansions_max},
+          stop);
+      if (!report_.search.has_path || round == options_.rounds_max) break;
+      if (better()) kept = report_.search;
+    }
+    report_.search = std::move(kept);
+  }
+
+  /// Whether the last search's path is kept.
+  bool better() {
+    const std::vector<Vector6> displacements = searched_->displacements(report_.search.path);
+    if (displacements == displacements_of(*report_.plan)) return tell_bound();
+    Judgement judgement = judge_.judge(displacements);
+    if (const auto* refutation = std::get_if<Refutation>(&judgement)) {
+      learn(*refutation);
+      refuted_ = true;
+      return false;
+    }
+    auto& judged = std::get<JudgedPlan>(judgement);
+    if (!(judged.plan.cost < report_.plan->cost)) return false;
+    keep(std::move(judged), report_.search);
+    return true;
+  }
+
+  /// The same path again: it may be proven to be nearer to the optimum.
+  bool tell_bound() {
+    const double bound = report_.search.bound;
+    const double told = report_.plan->bound;
+    if (!(bound < told || (told == 0.0 && std::isfinite(bound)))) return false;
+    Plan plan = *report_.plan;
+    plan.bound = bound;
+    report_.bytes = encode_plan(plan);
+    report_.plan = through_bytes(plan);
+    if (options_.planned) options_.planned(report_);
+    return true;
   }
 
   PlanReport ended(PlanStatus status, const std::string& reason) {
@@ -160,6 +222,7 @@ class Planning {
   SuccessorEngine long_succ_;
   PathJudge judge_;
   std::optional<SearchedGraph> searched_;
+  bool refuted_ = false;  ///< the last better path
   PlanReport report_;
 };
 

@@ -34,6 +34,11 @@ struct PlannerOptions {
   std::size_t draws = kDrawsMin;      ///< random starts of each validation
   std::size_t expansions_max = 5000;  ///< of one search
   std::size_t rounds_max = 100;       ///< searches, each without what the last ones had refuted
+  /// How long to look for better plans once there is one, with ever lower weights on the same graph
+  /// (s, by the clock that is handed in). 0: the first plan is the plan.
+  double improve_s = 0.0;
+  /// Told of every plan that is kept, the first and each better one, with its bytes; may be empty.
+  std::function<void(const PlanReport&)> planned;
   /// Told, in a line, what has just been done; may be empty. Called from the caller's thread.
   std::function<void(const std::string&)> progress;
 };
