@@ -60,13 +60,17 @@ Judgement PathJudge::at_speeds(const Plan& plan, Certification certification,
   };
   if (!certification.holds()) return refuted(refutation_of(certification));
   const Extremes extremes = extremes_of(plan);
-  if (auto miss = missed_corner(extremes.corners, task_)) return refuted(*miss);
+  if (const Draw* miss = missed_draw(extremes.corners, task_.particle_sigmas)) {
+    return refuted(refutation_of(*miss, task_));
+  }
   std::vector<Chain> good = good_chains(extremes.corners);
   append(good, good_chains(extremes.rim));
   std::vector<Draw> draws;
   if (!shorten(plan, good, distances_m)) {
     draws = drawn(plan, kSearchSeed);
-    if (auto miss = missed_draw(draws, task_.particle_sigmas)) return refuted(*miss);
+    if (const Draw* miss = missed_draw(draws, task_.particle_sigmas)) {
+      return refuted(refutation_of(*miss, task_));
+    }
     append(good, good_chains(draws));
   }
   if (draws.empty() || shorten(plan, good, distances_m)) {
@@ -82,7 +86,9 @@ std::variant<Plan, Refutation> PathJudge::widened(const Plan& plan, std::vector<
   Plan judged = with_envelopes(plan, task_, good);
   for (std::uint64_t batch = 0; batch < kEnvelopeBatches; ++batch) {
     const std::vector<Draw> further = drawn(plan, kEnvelopeSeed + batch);
-    if (auto miss = missed_draw(further, task_.particle_sigmas)) return *miss;
+    if (const Draw* miss = missed_draw(further, task_.particle_sigmas)) {
+      return refutation_of(*miss, task_);
+    }
     const std::vector<Chain> more = good_chains(further);
     if (stay_within(judged, more)) break;
     append(good, more);

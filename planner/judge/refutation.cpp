@@ -14,31 +14,18 @@ Refutation refutation_of(const Certification& certification) {
   return refutation;
 }
 
-std::optional<Refutation> missed_draw(std::span<const Draw> draws, double particle_sigmas) {
-  for (const Draw& draw : draws) {
-    if (draw.at_goal || draw.mahalanobis > particle_sigmas) continue;
-    return Refutation{draw.chain, std::nullopt,
-                      format("a draw %.2f sigma out missed the goal", draw.mahalanobis)};
-  }
-  return std::nullopt;
-}
-
-std::optional<Refutation> missed_corner(std::span<const Draw> corners, const Task& task) {
-  for (const Draw& corner : corners) {
-    if (corner.at_goal) continue;
-    return Refutation{corner.chain, std::nullopt,
-                      format("a start %g sigma out missed the goal at ", corner.mahalanobis) +
-                          corner_name(corner.chain.start.physics, task)};
-  }
-  return std::nullopt;
+Refutation refutation_of(const Draw& missed, const Task& task) {
+  return {missed.chain, std::nullopt,
+          format("a start %.2f sigma out missed the goal at ", missed.mahalanobis) +
+              corner_name(missed.chain.start.physics, task)};
 }
 
 std::string corner_name(const PhysicalParameters& corner, const Task& task) {
   std::string name =
-      format("friction %g, latency %.1f ms", corner.friction, 1e3 * corner.latency_s);
+      format("friction %.3g, latency %.1f ms", corner.friction, 1e3 * corner.latency_s);
   if (task.oversize_m <= 0.0) return name;
   if (corner.oversize_m <= 0.0) return name + ", the part as drawn";
-  return name + format(", the part %g mm larger than drawn", 1e3 * corner.oversize_m);
+  return name + format(", the part %.3g mm larger than drawn", 1e3 * corner.oversize_m);
 }
 
 }  // namespace tenon::planner

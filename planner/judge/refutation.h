@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "planner/judge/certification.h"
@@ -21,14 +20,8 @@ struct Refutation {
 /// The earliest disagreement. @param certification one that does not hold
 [[nodiscard]] Refutation refutation_of(const Certification& certification);
 
-/// The first draw within the particles' reach that missed the goal; empty where all of them met it.
-/// @param particle_sigmas how far the particles reach, standard deviations
-[[nodiscard]] std::optional<Refutation> missed_draw(std::span<const Draw> draws,
-                                                    double particle_sigmas);
-
-/// The first start at a corner of friction, size and latency that missed the goal, by name.
-[[nodiscard]] std::optional<Refutation> missed_corner(std::span<const Draw> corners,
-                                                      const Task& task);
+/// A draw that missed the goal, with the physics that it had.
+[[nodiscard]] Refutation refutation_of(const Draw& missed, const Task& task);
 
 /// "friction 0.6, latency 7.0 ms, the part 0.5 mm larger than drawn", for people.
 [[nodiscard]] std::string corner_name(const PhysicalParameters& corner, const Task& task);

@@ -19,6 +19,13 @@ bool ends_at_goal(const Chain& chain, const Task& task) {
 
 }  // namespace
 
+const Draw* missed_draw(std::span<const Draw> draws, double sigmas) {
+  const auto missed = std::find_if(draws.begin(), draws.end(), [sigmas](const Draw& draw) {
+    return !draw.at_goal && draw.mahalanobis <= sigmas;
+  });
+  return missed == draws.end() ? nullptr : &*missed;
+}
+
 std::size_t arrived(std::span<const Draw> draws) {
   return static_cast<std::size_t>(
       std::count_if(draws.begin(), draws.end(), [](const Draw& d) { return d.at_goal; }));

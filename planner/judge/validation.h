@@ -38,6 +38,9 @@ struct Validation {
   [[nodiscard]] std::size_t at_goal_within(double sigmas) const;
 };
 
+/// The first of them within so many standard deviations that missed the goal; null where all of
+/// these met it.
+[[nodiscard]] const Draw* missed_draw(std::span<const Draw> draws, double sigmas);
 /// How many of them ended at the goal.
 [[nodiscard]] std::size_t arrived(std::span<const Draw> draws);
 /// The chains of those that ended at the goal.

@@ -8,6 +8,7 @@
 #include <array>
 #include <set>
 
+#include "planner/judge/refutation.h"
 #include "tests/planner/room_plan.h"
 
 namespace tenon::planner {
@@ -125,6 +126,23 @@ TEST(Validation, OtherRulesDecideOnTheSameMovesWithoutSimulatingThem) {
     EXPECT_FALSE(draw.chain.failure.empty());
   }
   EXPECT_EQ(arrived(decided_by(*report.plan, task, report.validation.corners)), 32U);
+}
+
+TEST(Validation, TheFirstDrawWithinReachThatMissedSpeaksWithThePhysicsThatItHad) {
+  Task task = room_task();
+  task.oversize_m = 1e-3;
+  std::vector<Draw> draws(4);
+  draws[0].mahalanobis = 1.0;
+  draws[0].at_goal = true;
+  EXPECT_EQ(missed_draw({&draws[0], 1}, 2.0), nullptr);
+  draws[1].mahalanobis = 2.5;
+  EXPECT_EQ(missed_draw({draws.data(), 2}, 2.0), nullptr) << "beyond the promise";
+  draws[2].mahalanobis = 1.5;
+  draws[2].chain.start.physics = {0.6, 5e4, 1e-3, 0.007};
+  EXPECT_EQ(missed_draw(draws, 2.0), &draws[2]);
+  EXPECT_EQ(refutation_of(draws[2], task).why,
+            "a start 1.50 sigma out missed the goal at friction 0.6, latency 7.0 ms, the part 1 mm "
+            "larger than drawn");
 }
 
 TEST(Validation, AStartOnTheRimThatCollidesIsLeftOut) {
