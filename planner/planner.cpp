@@ -11,6 +11,7 @@
 #include "planner/goal_certainty.h"
 #include "planner/judge/path_judge.h"
 #include "planner/search/contact_greedy.h"
+#include "planner/search/goal_attractors.h"
 #include "planner/search_moves.h"
 #include "planner/searched_graph.h"
 #include "planner/wording.h"

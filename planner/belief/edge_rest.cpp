@@ -14,7 +14,7 @@ bool rests_at_edge(const Particle& particle, std::uint8_t axes, Rollout& rollout
   for (int axis = 0; axis < 3; ++axis) {
     const int environment = particle.signature.sign(axis);
     if (environment == 0 || !is_among(axes, axis)) continue;
-    Pose pressed = particle.pose;
+    Pose pressed = particle.tool();
     pressed.position_m[axis] -= environment * kPressed_m;
     // A smaller part may stand that far off where the largest would; there is nothing to be said.
     if (!rollout.in_collision(pressed)) continue;

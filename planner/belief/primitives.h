@@ -17,6 +17,10 @@ struct Primitive {
 
 inline constexpr int kDirectLabel = 12;
 
+/// Of a step's or a long push's label.
+[[nodiscard]] inline int axis_of(const Primitive& push) { return push.label / 2; }
+[[nodiscard]] inline int sign_of(const Primitive& push) { return push.label % 2 == 0 ? 1 : -1; }
+
 /// + and - one step along every search coordinate.
 [[nodiscard]] std::vector<Primitive> step_primitives(const Task& task);
 

@@ -36,8 +36,4 @@ struct Attractors {
                                          SuccessorEngine& succ, Rollout& rollout,
                                          const std::function<bool()>& stop = {});
 
-/// The goals alone, for a search without guides.
-[[nodiscard]] std::vector<Pose> goal_attractors(const Task& task, const Belief& start,
-                                                SuccessorEngine& succ);
-
 }  // namespace tenon::planner
