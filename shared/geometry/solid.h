@@ -1,0 +1,70 @@
+#pragma once
+// A closed surface of triangles, and how far points are from it. Immutable after construction: any
+// number of threads may ask.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "shared/geometry/triangle_mesh.h"
+#include "shared/geometry/triangle_tree.h"
+
+namespace tenon {
+
+class Solid {
+ public:
+  /// @param mesh closed, facing outwards (check_mesh() in mesh_check.h), in any place
+  explicit Solid(TriangleMesh mesh);
+
+  [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
+  /// Edge lengths of the box around it, which has its centre at the origin.
+  [[nodiscard]] const Vector3& size_m() const { return size_m_; }
+  /// Where the given mesh had that centre.
+  [[nodiscard]] const Vector3& centre_m() const { return centre_m_; }
+
+  struct Place {
+    double distance_m = 0.0;  ///< to the surface; negative inside
+    Vector3 outwards;         ///< the distance's gradient, a unit vector
+    Vector3 nearest_m;        ///< on the surface
+    std::uint32_t triangle = 0;
+    bool on_face = false;  ///< nearest is the inside of a triangle, no edge or corner
+  };
+  /// Exact: the closest point of all triangles, the sign by the angle-weighted normal there
+  /// (Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal").
+  /// @param guess a triangle that is probably near: it only saves time
+  [[nodiscard]] Place place(const Vector3& point_m, std::uint32_t guess = 0) const;
+
+  /// The point may move so far, any way, before anything but the plane that it is nearest to now,
+  /// and seen from inside the face, can be nearest; at most `at_most_m`, 0 where it is nearest to
+  /// an edge or a corner.
+  /// @param place as place() has it
+  [[nodiscard]] double flat_for_m(const Vector3& point_m, const Place& place,
+                                  double at_most_m) const;
+
+  struct Edge {
+    std::uint32_t from = 0;  ///< corners of the mesh
+    std::uint32_t to = 0;
+  };
+  /// Where the surface bends outwards, each once. Where two solids meet, one of these is on the
+  /// other's surface: faces and hollow edges need not be looked at.
+  [[nodiscard]] const std::vector<Edge>& convex_edges() const { return convex_edges_; }
+
+ private:
+  void find_normals();
+  /// Triangles on one plane that hang together become one face.
+  void join_faces(std::uint32_t triangle, std::uint32_t other);
+  [[nodiscard]] std::uint32_t face_of(std::uint32_t triangle) const;
+  [[nodiscard]] const Vector3& normal_at(const NearestOnTriangle& nearest) const;
+
+  Vector3 centre_m_;
+  Vector3 size_m_;
+  TriangleMesh mesh_;
+  TriangleTree tree_;
+  std::vector<Vector3> face_normals_;
+  std::vector<std::array<Vector3, 3>> edge_normals_;
+  std::vector<Vector3> corner_normals_;
+  std::vector<Edge> convex_edges_;
+  std::vector<std::uint32_t> faces_;  ///< one a triangle
+};
+
+}  // namespace tenon

@@ -1,0 +1,125 @@
+// How far points are from a body of triangles.
+#include "shared/geometry/solid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "shared/base/random.h"
+#include "shared/geometry/extrusion.h"
+#include "tests/support/meshes.h"
+
+namespace tenon {
+namespace {
+
+using tests::box_mesh;
+
+Vector3 drawn_in(Random& random, const Vector3& size_m) {
+  return {(random.uniform() - 0.5) * size_m.x(), (random.uniform() - 0.5) * size_m.y(),
+          (random.uniform() - 0.5) * size_m.z()};
+}
+
+double box_distance_m(const Vector3& point_m, const Vector3& size_m) {
+  const Vector3 off_m = point_m.cwiseAbs() - 0.5 * size_m;
+  return off_m.cwiseMax(0.0).norm() + std::min(0.0, off_m.maxCoeff());
+}
+
+/// By how many faces a ray crosses, and the closest of a fine net of points on every triangle.
+double slow_distance_m(const TriangleMesh& mesh, const Vector3& point_m) {
+  double least_m = 1e9;
+  int crossed = 0;
+  const Vector3 way = Vector3(0.3, 0.5, 0.81).normalized();
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto c = mesh.corners_m(i);
+    constexpr int kNet = 60;
+    for (int u = 0; u <= kNet; ++u) {
+      for (int v = 0; u + v <= kNet; ++v) {
+        const Vector3 at_m = c[0] + u * (c[1] - c[0]) / kNet + v * (c[2] - c[0]) / kNet;
+        least_m = std::min(least_m, (at_m - point_m).norm());
+      }
+    }
+    Eigen::Matrix3d basis;
+    basis << c[1] - c[0], c[2] - c[0], -way;
+    const Vector3 solved = basis.inverse() * (point_m - c[0]);
+    crossed +=
+        solved.x() > 0.0 && solved.y() > 0.0 && solved.x() + solved.y() < 1.0 && solved.z() > 0.0;
+  }
+  return crossed % 2 == 1 ? -least_m : least_m;
+}
+
+TEST(Solid, ABoxIsAsFarAsItsFormulaSays) {
+  const Vector3 size_m(0.02, 0.03, 0.05);
+  const Solid solid(box_mesh(size_m, {0.3, 0.2, -0.1}));
+  EXPECT_LT((solid.size_m() - size_m).norm(), 1e-12);
+  EXPECT_LT((solid.centre_m() - Vector3(0.3, 0.2, -0.1)).norm(), 1e-12);
+  EXPECT_EQ(solid.convex_edges().size(), 12U);
+  Random random(1);
+  for (int i = 0; i < 5000; ++i) {
+    const Vector3 point_m = drawn_in(random, 2.0 * size_m);
+    const Solid::Place place = solid.place(point_m, static_cast<std::uint32_t>(i % 12));
+    EXPECT_NEAR(place.distance_m, box_distance_m(point_m, size_m), 1e-12);
+    EXPECT_NEAR(place.outwards.norm(), 1.0, 1e-12);
+    EXPECT_LT((point_m - place.distance_m * place.outwards - place.nearest_m).norm(), 1e-12);
+  }
+}
+
+TEST(Solid, AHollowBodyIsAsFarAsASlowSearchFinds) {
+  const TriangleMesh mesh =
+      extruded({{0, 0}, {0.03, 0}, {0.03, 0.01}, {0.012, 0.008}, {0.01, 0.03}, {0, 0.03}}, 0.02);
+  const Solid solid(mesh);
+  Random random(2);
+  int inside = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 point_m = drawn_in(random, 1.4 * solid.size_m());
+    const double slow_m = slow_distance_m(mesh, point_m + solid.centre_m());
+    const double exact_m = solid.place(point_m).distance_m;
+    inside += exact_m < 0.0;
+    EXPECT_EQ(exact_m < 0.0, slow_m < 0.0) << point_m.transpose();
+    // The net is half a millimetre wide at most.
+    EXPECT_LE(std::abs(exact_m), std::abs(slow_m) + 1e-12);
+    EXPECT_NEAR(exact_m, slow_m, 0.6e-3);
+  }
+  EXPECT_GT(inside, 20);
+  EXPECT_LT(inside, 180);
+  // The hollow corner is not sampled.
+  EXPECT_EQ(solid.convex_edges().size(), 3U * 6U - 1U);
+}
+
+TEST(Solid, AGuessChangesNoBit) {
+  const Solid solid(extruded(tests::round_profile(0.01, 40), 0.03));
+  Random random(3);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3 point_m = drawn_in(random, 1.2 * solid.size_m());
+    const Solid::Place plain = solid.place(point_m);
+    const Solid::Place guessed = solid.place(
+        point_m, static_cast<std::uint32_t>(random.uniform() * 0.999 *
+                                            static_cast<double>(solid.mesh().triangles.size())));
+    EXPECT_EQ(plain.distance_m, guessed.distance_m);
+    EXPECT_EQ(plain.outwards, guessed.outwards);
+    EXPECT_EQ(plain.triangle, guessed.triangle);
+  }
+}
+
+TEST(Solid, AFlatPlaceStaysFlatForAsFarAsItSays) {
+  const Solid solid(
+      extruded({{0, 0}, {0.03, 0}, {0.03, 0.01}, {0.01, 0.01}, {0.01, 0.03}, {0, 0.03}}, 0.02));
+  Random random(4);
+  int flat = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3 point_m = drawn_in(random, 1.2 * solid.size_m());
+    const Solid::Place place = solid.place(point_m);
+    const double way_m = solid.flat_for_m(point_m, place, 2e-3);
+    EXPECT_LE(way_m, 2e-3);
+    if (way_m <= 0.0) continue;
+    ++flat;
+    const Vector3 there_m = point_m + 0.999 * way_m * drawn_in(random, {1, 1, 1}).normalized();
+    EXPECT_NEAR(solid.place(there_m).distance_m, place.outwards.dot(there_m - place.nearest_m),
+                1e-12);
+  }
+  EXPECT_GT(flat, 500);
+}
+
+}  // namespace
+}  // namespace tenon
