@@ -2,6 +2,7 @@
 // An assembly problem: what planner/tasks/*.yaml say. Loading stands in shared/config.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 
 namespace tenon {
 
+class Solid;
+
 struct Range {
   double low = 0.0;
   double nominal = 0.0;
@@ -20,12 +23,14 @@ struct Range {
 
 /// A rigid piece of the held part or of the environment.
 struct Shape {
-  enum class Kind : std::uint8_t { kBox, kCylinder };
+  enum class Kind : std::uint8_t { kBox, kCylinder, kSolid };
   std::string name;
   Kind kind = Kind::kBox;
-  Vector3 size_m =
-      Vector3::Zero();  ///< box: edge lengths; cylinder: diameter, diameter, length along z
-  Pose pose;            ///< of its centre, in the tool frame (held) or the task frame
+  /// Box: edge lengths; cylinder: diameter, diameter, length along z; solid: of the box around it.
+  /// A solid larger or smaller than that stands out farther, along x everywhere by half of it.
+  Vector3 size_m = Vector3::Zero();
+  Pose pose;  ///< of its centre, in the tool frame (held) or the task frame
+  std::shared_ptr<const Solid> solid = nullptr;  ///< a mesh or an extrusion
 };
 
 /// A part of space, in the task frame.

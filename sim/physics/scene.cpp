@@ -28,7 +28,14 @@ Scene::Scene(const std::vector<Shape>& held, const std::vector<Shape>& environme
   for (const Shape& shape : held) held_.emplace_back(shape);
   for (const Shape& shape : environment) environment_.emplace_back(shape).place(X_WT);
   for (std::size_t h = 0; h < held.size(); ++h) {
-    for (std::size_t e = 0; e < environment.size(); ++e) watched_.push_back({{h, e}, 0.0});
+    for (std::size_t e = 0; e < environment.size(); ++e) {
+      Watched& watched = watched_.emplace_back();
+      watched.pair = {h, e};
+      if (!held_[h].is_solid() && !environment_[e].is_solid()) continue;
+      solids_ = true;
+      watched.surfaces =
+          std::make_unique<SurfaceContact>(held_[h].surface(), environment_[e].surface());
+    }
   }
 }
 
@@ -68,12 +75,16 @@ Scene::Contacts Scene::find_contacts(bool turns) {
   Contacts result;
   result.depth_max_m = deepest_m(points_);
   (turns ? thin_out : keep_deepest)(points_);
+  if (solids_) keep_some(points_);
   result.points = points_.size();
   return result;
 }
 
 void Scene::moved_anywhere() {
-  for (Watched& watched : watched_) watched.apart_until_m = 0.0;
+  for (Watched& watched : watched_) {
+    watched.apart_until_m = 0.0;
+    if (watched.surfaces) watched.surfaces->forget();
+  }
   moved_m_ = 0.0;
   clear_until_m_ = 0.0;
   points_.clear();
@@ -84,6 +95,12 @@ void Scene::touch(Watched& watched, bool turns, PairPoints& buffer) {
   const ShapeGeometry& held = held_[watched.pair.held];
   const ShapeGeometry& environment = environment_[watched.pair.environment];
   std::span<const dContactGeom> found;
+  if (watched.surfaces) {
+    const std::size_t before = points_.size();
+    watched.apart_until_m = moved_m_ + touch_surfaces(watched, points_);
+    if (points_.size() > before) touching_.push_back(watched.pair);
+    return;
+  }
   if (const auto one = turns ? std::nullopt : prism_contact(held, environment)) {
     watched.apart_until_m = moved_m_ + std::max(0.0, -static_cast<double>(one->depth));
     buffer.front() = *one;
@@ -95,6 +112,22 @@ void Scene::touch(Watched& watched, bool turns, PairPoints& buffer) {
   }
   if (!found.empty()) touching_.push_back(watched.pair);
   points_.insert(points_.end(), found.begin(), found.end());
+}
+
+SurfaceContact::Stand Scene::stand(const Pair& pair) const {
+  const ShapeGeometry& held = held_[pair.held];
+  const ShapeGeometry& environment = environment_[pair.environment];
+  return {held.pose(), environment.pose(), held.offset_m() + environment.offset_m(), moved_m_};
+}
+
+double Scene::touch_surfaces(const Watched& watched, std::vector<dContactGeom>& points) const {
+  const std::size_t before = points.size();
+  const double gap_m = watched.surfaces->find(stand(watched.pair), points);
+  for (std::size_t i = before; i < points.size(); ++i) {
+    points[i].g1 = held_[watched.pair.held].id();
+    points[i].g2 = environment_[watched.pair.environment].id();
+  }
+  return gap_m;
 }
 
 void Scene::make_joints(OdeWorld& world, double step_s, const ContactLaw& law) {
@@ -110,9 +143,17 @@ double Scene::reach_m() const {
 double Scene::overlap_m() const {
   double overlap_m = 0.0;
   PairPoints buffer;
-  for (const ShapeGeometry& held : held_) {
-    for (const ShapeGeometry& environment : environment_) {
-      if (held.separation_m(environment) > 0.0) continue;
+  for (const Watched& watched : watched_) {
+    const ShapeGeometry& held = held_[watched.pair.held];
+    const ShapeGeometry& environment = environment_[watched.pair.environment];
+    if (held.separation_m(environment) > 0.0) continue;
+    if (watched.surfaces) {
+      std::vector<dContactGeom> points;
+      watched.surfaces->forget();
+      touch_surfaces(watched, points);
+      watched.surfaces->forget();
+      overlap_m = std::max(overlap_m, deepest_m(points));
+    } else {
       const auto one = prism_contact(held, environment);
       overlap_m = std::max(overlap_m, one ? static_cast<double>(one->depth)
                                           : deepest_m(touching_points(held, environment, buffer)));

@@ -7,12 +7,14 @@
 
 #include <cstddef>
 #include <deque>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "shared/math/pose.h"
 #include "shared/task/task.h"
 #include "sim/physics/contacts/contact_law.h"
+#include "sim/physics/contacts/surface_contact.h"
 #include "sim/physics/contacts/touching_points.h"
 #include "sim/physics/solver/contact_joints.h"
 #include "sim/physics/solver/ode_world.h"
@@ -85,12 +87,19 @@ class Scene {
   Pose X_WT_;
   struct Watched {
     Pair pair;
-    double apart_until_m = 0.0;  ///< on the way that the held part has moved
+    double apart_until_m = 0.0;                ///< on the way that the held part has moved
+    std::unique_ptr<SurfaceContact> surfaces;  ///< where one of the two is a solid
   };
   /// Adds the points of two shapes that are near.
   void touch(Watched& watched, bool turns, PairPoints& buffer);
+  /// How the surfaces of two shapes stand to each other.
+  [[nodiscard]] SurfaceContact::Stand stand(const Pair& pair) const;
+  /// The same from their surfaces. @param points to which those that touch are added
+  /// @return a gap, m, as SurfaceContact::find()
+  double touch_surfaces(const Watched& watched, std::vector<dContactGeom>& points) const;
 
   std::vector<Watched> watched_;  // all pairs
+  bool solids_ = false;           // among the shapes
   double moved_m_ = 0.0;
   double clear_until_m_ = 0.0;
   double oversize_m_ = 0.0;

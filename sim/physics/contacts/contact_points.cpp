@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "shared/math/pose.h"
 
@@ -50,10 +51,8 @@ std::vector<std::size_t> outermost(const std::vector<dContactGeom>& points,
   return kept;
 }
 
-}  // namespace
-
-void thin_out(std::vector<dContactGeom>& points) {
-  if (points.size() <= kPointsAFace) return;
+/// Indices of points, those on one plane together.
+std::vector<std::vector<std::size_t>> faces_of(const std::vector<dContactGeom>& points) {
   std::vector<std::vector<std::size_t>> faces;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto face = std::find_if(faces.begin(), faces.end(), [&](const auto& members) {
@@ -65,15 +64,46 @@ void thin_out(std::vector<dContactGeom>& points) {
       face->push_back(i);
     }
   }
-  std::vector<std::size_t> kept;
-  for (const std::vector<std::size_t>& face : faces) {
-    const auto stay = face.size() <= kPointsAFace ? face : outermost(points, face);
-    kept.insert(kept.end(), stay.begin(), stay.end());
-  }
+  return faces;
+}
+
+/// In the order that they had.
+void keep_only(std::vector<dContactGeom>& points, std::vector<std::size_t> kept) {
   std::sort(kept.begin(), kept.end());
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
   for (std::size_t i = 0; i < kept.size(); ++i) points[i] = points[kept[i]];
   points.resize(kept.size());
+}
+
+}  // namespace
+
+void thin_out(std::vector<dContactGeom>& points) {
+  if (points.size() <= kPointsAFace) return;
+  std::vector<std::size_t> kept;
+  for (const std::vector<std::size_t>& face : faces_of(points)) {
+    const auto stay = face.size() <= kPointsAFace ? face : outermost(points, face);
+    kept.insert(kept.end(), stay.begin(), stay.end());
+  }
+  keep_only(points, std::move(kept));
+}
+
+void keep_some(std::vector<dContactGeom>& points) {
+  if (points.size() <= kPointsMax) return;
+  const auto deeper = [&](std::size_t a, std::size_t b) {
+    return points[a].depth != points[b].depth ? points[a].depth > points[b].depth : a < b;
+  };
+  // How many of its own face are deeper than a point, before how deep it is.
+  std::vector<std::pair<std::size_t, std::size_t>> ranked;
+  for (std::vector<std::size_t>& face : faces_of(points)) {
+    std::sort(face.begin(), face.end(), deeper);
+    for (std::size_t i = 0; i < face.size(); ++i) ranked.emplace_back(i, face[i]);
+  }
+  std::sort(ranked.begin(), ranked.end(), [&](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first < b.first : deeper(a.second, b.second);
+  });
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < kPointsMax; ++i) kept.push_back(ranked[i].second);
+  keep_only(points, std::move(kept));
 }
 
 void keep_deepest(std::vector<dContactGeom>& points) {

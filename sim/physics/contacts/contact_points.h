@@ -20,6 +20,11 @@ void thin_out(std::vector<dContactGeom>& points);
 /// deepest stays. Its force is that of the face, and a solver has a fraction of the work.
 void keep_deepest(std::vector<dContactGeom>& points);
 
+/// Of points on surfaces of any form, which may touch in many places at once, at most this many.
+inline constexpr std::size_t kPointsMax = 14;
+/// Keeps the deepest point of every plane, then the next deepest of each, until there are so many.
+void keep_some(std::vector<dContactGeom>& points);
+
 /// For every point, the part of its face's stiffness that it gets: in proportion to its depth, and
 /// as if it were alone on the face where the others only graze. So the force of a tilted face does
 /// not jump when another of its corners comes into reach, and does not depend on how many points

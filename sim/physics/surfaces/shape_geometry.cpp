@@ -5,12 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "shared/geometry/solid.h"
+
 namespace tenon::sim {
 namespace {
 
 dGeomID make_geometry(const Shape& shape) {
   switch (shape.kind) {
     case Shape::Kind::kBox:
+    case Shape::Kind::kSolid:
       return dCreateBox(nullptr, shape.size_m.x(), shape.size_m.y(), shape.size_m.z());
     case Shape::Kind::kCylinder:
       return dCreateCylinder(nullptr, 0.5 * shape.size_m.x(), shape.size_m.z());
@@ -53,10 +56,28 @@ void ShapeGeometry::set_oversize(double oversize_m) {
   const Vector3 size_m = shape_.size_m + Vector3::Constant(oversize_m);
   switch (shape_.kind) {
     case Shape::Kind::kBox:
+    case Shape::Kind::kSolid:
       return dGeomBoxSetLengths(geometry_, size_m.x(), size_m.y(), size_m.z());
     case Shape::Kind::kCylinder:
       return dGeomCylinderSetParams(geometry_, 0.5 * size_m.x(), size_m.z());
   }
+}
+
+const Surface& ShapeGeometry::surface() {
+  if (!surface_) surface_ = surface_of(shape_);
+  return *surface_;
+}
+
+double ShapeGeometry::offset_m() const {
+  const double grown_m = is_solid() ? shape_.size_m.x() - shape_.solid->size_m().x() : 0.0;
+  return 0.5 * (oversize_m_ + grown_m);
+}
+
+Pose ShapeGeometry::pose() const {
+  const dReal* p = dGeomGetPosition(geometry_);
+  dQuaternion q;
+  dGeomGetQuaternion(geometry_, q);
+  return {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
 }
 
 double ShapeGeometry::half_extent_m(const Vector3& way) const {
@@ -66,6 +87,7 @@ double ShapeGeometry::half_extent_m(const Vector3& way) const {
                       axis_of(rotation, 2).dot(way));
   switch (shape_.kind) {
     case Shape::Kind::kBox:
+    case Shape::Kind::kSolid:
       return half_m.dot(along.cwiseAbs());
     case Shape::Kind::kCylinder:
       return half_m.x() * along.head<2>().norm() + half_m.z() * std::abs(along.z());
@@ -91,6 +113,7 @@ double ShapeGeometry::separation_m(const ShapeGeometry& other) const {
 
 std::optional<ShapeGeometry::AxesInCommon> ShapeGeometry::axes_in_common(
     const ShapeGeometry& other) const {
+  if (is_solid() || other.is_solid()) return std::nullopt;
   constexpr double kParallel = 1.0 - 1e-12;  // 1.4 urad
   const auto first = [](const ShapeGeometry& shape) {
     return shape.shape_.kind == Shape::Kind::kCylinder ? 2 : 0;

@@ -1,15 +1,18 @@
 #pragma once
-// A shape of a task as ODE geometry: the one place in physics that knows which kinds of shapes
-// there are. It knows neither contacts nor joints. Private to sim; used on the thread of its world.
+// A shape of a task as ODE geometry and as a surface: with surfaces, the one place in physics that
+// knows which kinds of shapes there are. It knows neither contacts nor joints. Private to sim; used
+// on the thread of its world.
 
 #include <ode/ode.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "shared/math/pose.h"
 #include "shared/task/task.h"
 #include "sim/physics/surfaces/prism.h"
+#include "sim/physics/surfaces/surface.h"
 
 namespace tenon::sim {
 
@@ -22,7 +25,16 @@ class ShapeGeometry {
   ~ShapeGeometry();
 
   [[nodiscard]] const std::string& name() const { return shape_.name; }
+  /// Of a solid, a box around it that only says where it is.
   [[nodiscard]] dGeomID id() const { return geometry_; }
+  /// Neither box nor cylinder: its contacts come from its surface alone.
+  [[nodiscard]] bool is_solid() const { return shape_.kind == Shape::Kind::kSolid; }
+  /// As drawn, in the frame of the shape's centre. Made when first asked for.
+  [[nodiscard]] const Surface& surface();
+  /// By this much the surface stands out farther than drawn.
+  [[nodiscard]] double offset_m() const;
+  /// Of its centre, in the world.
+  [[nodiscard]] Pose pose() const;
 
   /// @param X_WT the frame in which the shape was drawn, in the world
   void place(const Pose& X_WT);
@@ -54,6 +66,7 @@ class ShapeGeometry {
   Shape shape_;
   double oversize_m_ = 0.0;
   dGeomID geometry_;
+  std::unique_ptr<const Surface> surface_;
 };
 
 }  // namespace tenon::sim

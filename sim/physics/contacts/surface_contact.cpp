@@ -1,0 +1,191 @@
+#include "sim/physics/contacts/surface_contact.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tenon::sim {
+namespace {
+
+// What is farther away is not looked at one by one.
+constexpr double kNear_m = 1e-3;
+// Looked at anew so much earlier than need be, so that rounding decides nothing.
+constexpr double kEarly_m = 1e-9;
+
+// Sharper edges than of some 35 degrees are taken by their sides.
+constexpr double kSteepMin = 0.3;
+
+Vector3 point_in(const Pose& X, const Vector3& point_m) {
+  return X.position_m + X.orientation * point_m;
+}
+
+dContactGeom contact_at(const Vector3& at_m, const Vector3& normal, double depth_m) {
+  dContactGeom contact{};
+  contact.depth = depth_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    contact.pos[axis] = at_m[axis];
+    contact.normal[axis] = normal[axis];
+  }
+  return contact;
+}
+
+/// Where the distance is least along a piece whose ends fall towards each other: the tangents meet
+/// there. Exact where the surface is an edge across the piece.
+struct Foot {
+  double along = 0.0;  ///< 0 to 1
+  double distance_m = 0.0;
+};
+Foot foot_of(double from_m, double to_m, double slope_from, double slope_to, double length_m) {
+  if (slope_from >= 0.0 || slope_to <= 0.0) {
+    return {from_m <= to_m ? 0.0 : 1.0, std::min(from_m, to_m)};
+  }
+  const double way_m =
+      std::clamp((to_m - slope_to * length_m - from_m) / (slope_from - slope_to), 0.0, length_m);
+  return {way_m / length_m, from_m + slope_from * way_m};
+}
+
+}  // namespace
+
+SurfaceContact::SurfaceContact(const Surface& held, const Surface& environment) {
+  held_.edges = environment_.surface = &held;
+  held_.surface = environment_.edges = &environment;
+  for (Side* side : {&held_, &environment_}) {
+    side->points.resize(side->edges->points_m().size());
+  }
+}
+
+void SurfaceContact::forget() {
+  for (Side* side : {&held_, &environment_}) {
+    side->near.clear();
+    side->complete_until_m = 0.0;
+    for (Side::Point& point : side->points) point.flat_until_m = 0.0;
+  }
+}
+
+const Surface::Place& SurfaceContact::place(Side& side, std::uint32_t index, const Pose& X_SE,
+                                            double moved_m) {
+  Side::Point& point = side.points[index];
+  if (point.time == time_) return point.place;
+  point.time = time_;
+  const Vector3 point_m = point_in(X_SE, side.edges->points_m()[index]);
+  Surface::Place& place = point.place;
+  if (moved_m < point.flat_until_m) {
+    place.distance_m = place.outwards.dot(point_m - place.nearest_m);
+    place.nearest_m = point_m - place.distance_m * place.outwards;
+    return place;
+  }
+  place = side.surface->place(point_m, place.guess);
+  point.flat_until_m = moved_m + side.surface->flat_for_m(point_m, place) - kEarly_m;
+  return place;
+}
+
+void SurfaceContact::gather(Side& side, const Pose& X_SE, const Stand& stand) {
+  side.near.clear();
+  side.complete_until_m = std::numeric_limits<double>::infinity();
+  const std::vector<Surface::Ball>& balls = side.edges->balls();
+  if (balls.empty()) return;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> waiting = {{0, 0}};  // ball, guess
+  while (!waiting.empty()) {
+    const auto [index, guess] = waiting.back();
+    waiting.pop_back();
+    const Surface::Ball& ball = balls[index];
+    const Surface::Place at = side.surface->place(point_in(X_SE, ball.centre_m), guess);
+    const double gap_m = at.distance_m - ball.radius_m - stand.offset_m;
+    if (gap_m > kNear_m) {
+      side.complete_until_m = std::min(side.complete_until_m, stand.moved_m + gap_m - kEarly_m);
+    } else if (ball.child != 0) {
+      waiting.emplace_back(ball.child, at.guess);
+      waiting.emplace_back(ball.child + 1, at.guess);
+    } else {
+      for (std::uint32_t i = 0; i < ball.count; ++i) {
+        side.near.push_back({side.edges->order()[ball.first + i], 0.0});
+      }
+    }
+  }
+  // In the order of the surface itself: the solver sees the same whatever the way here.
+  std::sort(side.near.begin(), side.near.end(),
+            [](const Side::Near& a, const Side::Near& b) { return a.piece < b.piece; });
+}
+
+void SurfaceContact::add(const Found& found, const Stand& stand,
+                         std::vector<dContactGeom>& points) const {
+  const Pose& X_WS = found.held ? stand.X_WE : stand.X_WH;
+  const Vector3 outwards = X_WS.orientation * found.outwards;
+  points.push_back(contact_at(point_in(X_WS, found.at_m),
+                              found.held ? outwards : Vector3(-outwards), found.depth_m));
+}
+
+double SurfaceContact::look_at(Side& side, const Side::Near& near, const Pose& X_SE,
+                               const Stand& stand) {
+  const Surface& edges = *side.edges;
+  const Surface::Piece& piece = edges.pieces()[near.piece];
+  const bool held = &side == &held_;
+  const auto end = [&](std::uint32_t point) -> const Surface::Place& {
+    const bool first = side.points[point].time != time_;
+    const Surface::Place& at = place(side, point, X_SE, stand.moved_m);
+    if (first && at.distance_m <= stand.offset_m) {
+      // On the environment, as everywhere.
+      const Vector3 at_m = held ? at.nearest_m : point_in(X_SE, edges.points_m()[point]);
+      const Vector3 against = X_SE.orientation.conjugate() * Vector3(-at.outwards);
+      found_.push_back({at_m, at.outwards, stand.offset_m - at.distance_m, held,
+                        edges.foremost(point, against)});
+    }
+    return at;
+  };
+  const Surface::Place& from = end(piece.from);
+  const Surface::Place& to = end(piece.to);
+  const Vector3 from_m = edges.points_m()[piece.from];
+  const Vector3 along_m = edges.points_m()[piece.to] - from_m;
+  const double length_m = along_m.norm();
+  const Vector3 way = X_SE.orientation * (along_m / length_m);
+  const double slope_from = way.dot(from.outwards);
+  const double slope_to = way.dot(to.outwards);
+  const Foot foot = foot_of(from.distance_m, to.distance_m, slope_from, slope_to, length_m);
+  if (foot.along > 0.0 && foot.along < 1.0 && foot.distance_m <= stand.offset_m) {
+    const Vector3 point_m = point_in(X_SE, from_m + foot.along * along_m);
+    const Surface::Place at = side.surface->place(point_m, from.guess);
+    if (at.distance_m <= std::min({stand.offset_m, from.distance_m, to.distance_m})) {
+      // Two edges part across both: the sides of the one add up to that direction.
+      const Vector3 across = (slope_to * from.outwards - slope_from * to.outwards).normalized();
+      const double steep = across.dot(at.outwards);
+      const bool edge = steep > kSteepMin;
+      const double depth_m = stand.offset_m - at.distance_m;
+      found_.push_back({held ? at.nearest_m : point_m, edge ? across : at.outwards,
+                        edge ? depth_m / steep : depth_m, held, edge});
+    }
+  }
+  return std::min({from.distance_m, to.distance_m, foot.distance_m}) - stand.offset_m;
+}
+
+void SurfaceContact::choose(const Stand& stand, std::vector<dContactGeom>& points) const {
+  double deepest_m = -1.0;
+  for (const Found& found : found_) {
+    if (found.foremost) deepest_m = std::max(deepest_m, found.depth_m);
+  }
+  for (const Found& found : found_) {
+    if (found.foremost || found.depth_m > deepest_m) add(found, stand, points);
+  }
+}
+
+double SurfaceContact::find(const Stand& stand, std::vector<dContactGeom>& points) {
+  ++time_;
+  found_.clear();
+  double until_m = std::numeric_limits<double>::infinity();
+  for (Side* side : {&held_, &environment_}) {
+    const bool held = side == &held_;
+    const Pose X_SE =
+        held ? compose(inverse(stand.X_WE), stand.X_WH) : compose(inverse(stand.X_WH), stand.X_WE);
+    if (side->complete_until_m <= stand.moved_m) gather(*side, X_SE, stand);
+    for (Side::Near& near : side->near) {
+      if (near.until_m <= stand.moved_m) {
+        const double gap_m = look_at(*side, near, X_SE, stand);
+        near.until_m = stand.moved_m + std::max(0.0, gap_m - kEarly_m);
+      }
+      until_m = std::min(until_m, near.until_m);
+    }
+    until_m = std::min(until_m, side->complete_until_m);
+  }
+  choose(stand, points);
+  return std::max(0.0, until_m - stand.moved_m);
+}
+
+}  // namespace tenon::sim

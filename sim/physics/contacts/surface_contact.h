@@ -1,0 +1,76 @@
+#pragma once
+// Where two surfaces of any kind touch, from exact distances. Private to sim; one thread.
+
+#include <ode/ode.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/physics/surfaces/surface.h"
+
+namespace tenon::sim {
+
+/// The edges of either surface against the other. Remembers which of their pieces are near, and how
+/// far the two may still move before a piece has to be looked at again: what it finds is the same
+/// as if it looked at everything.
+class SurfaceContact {
+ public:
+  SurfaceContact(const Surface& held, const Surface& environment);
+
+  /// How the two stand now.
+  struct Stand {
+    Pose X_WH;  ///< in the world
+    Pose X_WE;
+    double offset_m = 0.0;  ///< by this much both surfaces together stand out farther than drawn
+    double moved_m = 0.0;   ///< no point has moved farther, since forget(), against the other
+  };
+  /// Appends the points that touch; normals are towards the held one, `g1` and `g2` are left open.
+  /// @return a gap, m: nothing touches before the two have moved so far; 0 where something does
+  double find(const Stand& stand, std::vector<dContactGeom>& points);
+
+  /// The two may have moved anywhere.
+  void forget();
+
+ private:
+  /// One surface's edges against the other surface.
+  struct Side {
+    const Surface* edges = nullptr;
+    const Surface* surface = nullptr;
+    struct Near {
+      std::uint32_t piece = 0;
+      double until_m = 0.0;  ///< not to be looked at before
+    };
+    std::vector<Near> near;
+    double complete_until_m = 0.0;  ///< what is not in `near` touches nothing before
+    struct Point {
+      Surface::Place place;       ///< in the surface's frame
+      std::uint64_t time = 0;     ///< when it was
+      double flat_until_m = 0.0;  ///< before that only the distance from the plane can have changed
+    };
+    std::vector<Point> points;  ///< of the edges
+  };
+  void gather(Side& side, const Pose& X_SE, const Stand& stand);
+  const Surface::Place& place(Side& side, std::uint32_t point, const Pose& X_SE, double moved_m);
+  double look_at(Side& side, const Side::Near& near, const Pose& X_SE, const Stand& stand);
+
+  /// In the frame of the surface that is touched.
+  struct Found {
+    Vector3 at_m;
+    Vector3 outwards;
+    double depth_m = 0.0;
+    bool held = false;      ///< an edge of the held one touches the environment
+    bool foremost = false;  ///< where it is pressed against the surface, not beside
+  };
+  void add(const Found& found, const Stand& stand, std::vector<dContactGeom>& points) const;
+  /// Where an edge that lies on a face passes the face's rim, it is nearer to the side than to the
+  /// face, and would be pushed off: what is not foremost counts only where it is deeper than all
+  /// that is.
+  void choose(const Stand& stand, std::vector<dContactGeom>& points) const;
+
+  Side held_;
+  Side environment_;
+  std::uint64_t time_ = 0;
+  std::vector<Found> found_;
+};
+
+}  // namespace tenon::sim

@@ -1,0 +1,86 @@
+#pragma once
+// What contact generation knows of a shape: how far any point is from its surface, and where its
+// own surface is to be looked at. Private to sim; pure.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "shared/math/pose.h"
+#include "shared/task/task.h"
+
+namespace tenon::sim {
+
+/// A closed surface in a frame of its own. Two of them meet where an outward edge of one is on the
+/// other: what is sampled are the edges, straight and in pieces.
+class Surface {
+ public:
+  virtual ~Surface() = default;
+
+  struct Place {
+    double distance_m = 0.0;  ///< negative inside
+    Vector3 outwards;         ///< the gradient, a unit vector
+    Vector3 nearest_m;        ///< on the surface
+    std::uint32_t guess = 0;  ///< for a place nearby
+    bool on_face = false;     ///< nearest is the inside of a flat face, by what the kind knows
+  };
+  /// The same numbers whatever the guess.
+  [[nodiscard]] virtual Place place(const Vector3& point_m, std::uint32_t guess) const = 0;
+
+  /// The point may move so far, any way, and its distance is that from the plane through
+  /// `nearest_m` across `outwards`. 0 where that is not known.
+  [[nodiscard]] virtual double flat_for_m(const Vector3& /*point_m*/,
+                                          const Place& /*place*/) const {
+    return 0.0;
+  }
+
+  struct Piece {
+    std::uint32_t from = 0;  ///< indices of points
+    std::uint32_t to = 0;
+  };
+  [[nodiscard]] const std::vector<Vector3>& points_m() const { return points_m_; }
+  [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+
+  /// Whether no edge at the point leads farther along a direction, a unit vector: what is pressed
+  /// that way touches there, and not beside.
+  [[nodiscard]] bool foremost(std::uint32_t point, const Vector3& way) const;
+
+  /// A ball around some pieces: those from first to first + count in order(), and two balls within
+  /// it unless it is a leaf.
+  struct Ball {
+    Vector3 centre_m;
+    double radius_m = 0.0;
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+    std::uint32_t child = 0;  ///< and the next; 0: none
+  };
+  [[nodiscard]] const std::vector<Ball>& balls() const { return balls_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
+
+ protected:
+  Surface() = default;
+  Surface(const Surface&) = default;
+  Surface& operator=(const Surface&) = default;
+
+  /// Cuts edges into pieces no longer than this, and puts balls around them.
+  struct Edge {
+    Vector3 from_m;
+    Vector3 to_m;
+  };
+  void sample(const std::vector<Edge>& edges, double piece_max_m);
+
+ private:
+  void split(std::size_t ball);
+
+  std::vector<Vector3> points_m_;
+  std::vector<Piece> pieces_;
+  std::vector<std::vector<Vector3>> leading_;  ///< directions of the pieces at each point
+  std::vector<Ball> balls_;
+  std::vector<std::uint32_t> order_;
+};
+
+/// Of a shape as drawn, in the frame of its centre.
+[[nodiscard]] std::unique_ptr<const Surface> surface_of(const Shape& shape);
+
+}  // namespace tenon::sim
