@@ -6,22 +6,22 @@
 #include "shared/base/text.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
+#include "shared/config/load_shapes.h"
 #include "shared/config/variant.h"
 #include "shared/config/yaml_value.h"
 #include "shared/motion/rules.h"
 #include "shared/task/inserted.h"
 #include "shared/task/own_moves.h"
-#include "shared/task/ring.h"
 
 namespace tenon {
 namespace {
 
 using config::Bounds;
+using config::kSizeMax_m;
 using config::Map;
 using config::positive_to;
 using config::Value;
 
-constexpr std::size_t kShapesMax = 200;
 constexpr std::size_t kStartsMax = 200;
 constexpr double kSizeMax_m = 100.0;
 constexpr std::uint8_t kTranslations = 0b000111;
@@ -41,56 +41,6 @@ CoordinateMask read_axes(const Value& value) {
     mask |= bit;
   }
   return static_cast<CoordinateMask>(mask);
-}
-
-Ring read_ring(const Value& value, const std::string& name, const Pose& pose) {
-  const Map map(value, {"inner_diameter_m", "outer_diameter_m", "length_m", "segments"});
-  Ring ring;
-  ring.name = name;
-  ring.pose = pose;
-  ring.inner_diameter_m = map.number("inner_diameter_m", positive_to(kSizeMax_m));
-  ring.outer_diameter_m = map.number("outer_diameter_m", {ring.inner_diameter_m, kSizeMax_m, true});
-  ring.length_m = map.number("length_m", positive_to(kSizeMax_m));
-  if (const auto segments = map.find("segments")) {
-    ring.segments = static_cast<int>(segments->integer(8, 64));
-  }
-  return ring;
-}
-
-/// A shape, or those that a ring is made of.
-std::vector<Shape> read_shape(const Value& value, std::set<std::string>& names) {
-  const Map map(value, {"name", "box_m", "cylinder", "ring", "pose"});
-  Shape shape;
-  shape.name = map.at("name").name();
-  if (!names.insert(shape.name).second) map.at("name").refuse_value("unique among the shapes");
-  shape.pose = map.at("pose").pose();
-  const auto box = map.find("box_m");
-  const auto cylinder = map.find("cylinder");
-  const auto ring = map.find("ring");
-  if (box.has_value() + cylinder.has_value() + ring.has_value() != 1) {
-    value.refuse(
-        "needs one of box_m: [x, y, z], cylinder: {diameter_m: d, length_m: l}, "
-        "ring: {inner_diameter_m: i, outer_diameter_m: o, length_m: l}");
-  }
-  if (ring) return boxes_of(read_ring(*ring, shape.name, shape.pose));
-  if (box) {
-    shape.size_m = box->vector(positive_to(kSizeMax_m));
-    return {shape};
-  }
-  const Map sizes(*cylinder, {"diameter_m", "length_m"});
-  const double diameter_m = sizes.number("diameter_m", positive_to(kSizeMax_m));
-  shape.kind = Shape::Kind::kCylinder;
-  shape.size_m = {diameter_m, diameter_m, sizes.number("length_m", positive_to(kSizeMax_m))};
-  return {shape};
-}
-
-std::vector<Shape> read_shapes(const Value& value, std::set<std::string>& names) {
-  std::vector<Shape> shapes;
-  for (const Value& entry : value.list(1, kShapesMax)) {
-    const std::vector<Shape> read = read_shape(entry, names);
-    shapes.insert(shapes.end(), read.begin(), read.end());
-  }
-  return shapes;
 }
 
 /// One number for each search coordinate of a kind, in the order x y z or rx ry rz.
@@ -293,12 +243,12 @@ Task load_task(const std::filesystem::path& name) {
        "goal", "primitives", "speeds", "contact", "compliance", "search", "physics", "variants"});
   Task task;
   task.name = read_name(map.at("name"), variant);
-  task.hash = fnv1a_64(variant ? text + "#" + *variant : text);
   task.coordinates = read_axes(map.at("coordinates"));
 
-  std::set<std::string> shape_names;
-  task.held = read_shapes(map.at("held"), shape_names);
-  task.environment = read_shapes(map.at("environment"), shape_names);
+  config::ShapeReader shapes(file.parent_path());
+  task.held = shapes.read(map.at("held"));
+  task.environment = shapes.read(map.at("environment"));
+  task.hash = fnv1a_64((variant ? text + "#" + *variant : text) + shapes.contents());
 
   read_goal(map.at("goal"), task);
   std::set<std::string> start_names;

@@ -155,7 +155,8 @@ TEST(LoadTask, RefusesEachBadNameAndShapeWithItsPlace) {
        ":6: environment[0].box_m[1] = 0, must be in (0, 100]"},
       {"box_m: [1, 2, 3], ", "",
        ":6: environment[0]: needs one of box_m: [x, y, z], cylinder: {diameter_m: d, length_m: l}, "
-       "ring: {inner_diameter_m: i, outer_diameter_m: o, length_m: l}"},
+       "ring: {inner_diameter_m: i, outer_diameter_m: o, length_m: l}, "
+       "extrusion: {profile_m: [[x, y], ...], length_m: l}, mesh: {file: f, scale: s}"},
       {"length_m: 0.1", "length: 0.1",
        ":4: held[0].cylinder.length: is an unknown key, known here: diameter_m, length_m"},
       {"length_m: 0.1", "length_m: 0.1, diameter_m: 1",

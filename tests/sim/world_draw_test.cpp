@@ -122,6 +122,16 @@ TEST(WorldDrawTest, ARoundShapeStaysRound) {
   EXPECT_NE(real.size_m.x(), task.held[0].size_m.x());
 }
 
+TEST(WorldDrawTest, ASolidGrowsOnAllSidesAlike) {
+  Task task = wall_task();
+  task.held[0].kind = Shape::Kind::kSolid;
+  const WorldDraw draw = draw_world(many_ranges(), task, 9);
+  const Vector3 more_m = real_task(task, draw).held[0].size_m - task.held[0].size_m;
+  EXPECT_NE(more_m.x(), 0.0);
+  EXPECT_NEAR(more_m.x(), more_m.y(), 1e-15);
+  EXPECT_NEAR(more_m.x(), more_m.z(), 1e-15);
+}
+
 TEST(WorldDrawTest, AWorldWithoutPartOrPayloadIsRefused) {
   WorldDraw draw;
   draw.clearance_m = 0.2;

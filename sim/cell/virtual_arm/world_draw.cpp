@@ -36,10 +36,13 @@ class Stream {
   Random source_;
 };
 
-/// A round thing stays round.
+/// A round thing stays round, and a solid grows or shrinks on all sides alike.
 Vector3 grown(const Shape& shape, double by_m, const Vector3& error_m) {
   Vector3 size_m = shape.size_m + Vector3::Constant(by_m) + error_m;
   if (shape.kind == Shape::Kind::kCylinder) size_m.y() = size_m.x();
+  if (shape.kind == Shape::Kind::kSolid) {
+    size_m = shape.size_m + Vector3::Constant(by_m + error_m.x());
+  }
   if (size_m.minCoeff() <= 0.0) {
     throw InputError("experiment: clearance_m and size_error_m leave nothing of shape " +
                      shape.name + "; choose smaller ones");
