@@ -93,8 +93,8 @@ class Planning {
 
   /// The method's particles, in the cell.
   [[nodiscard]] Belief belief_at_start() const {
-    return in_cell(start_belief(task_, start_, options_.method), assumptions_.contact_stiffness_Npm,
-                   assumptions_.latency_max_s);
+    return in_cell(start_belief(task_, start_, options_.method), task_,
+                   assumptions_.contact_stiffness_Npm, assumptions_.latency_max_s);
   }
 
   Attractors guides_from(const Belief& start) {

@@ -174,7 +174,7 @@ Certification certify(std::span<const std::uint8_t> bytes, const Task& task, Rol
   }
   const Plan& plan = *decoded.plan;
   check_same_task(plan, task);
-  const Belief belief = in_cell(start_belief(task, start_of(plan, task), plan.method),
+  const Belief belief = in_cell(start_belief(task, start_of(plan, task), plan.method), task,
                                 plan.contact_stiffness_Npm, plan.latency_max_s);
   const std::size_t particles = belief.particles.size();
 
