@@ -40,6 +40,11 @@ std::vector<Vector6> displacements_of(const Plan& plan) {
   return displacements;
 }
 
+/// A lattice of the task's own has no other move to take.
+SuccessorEngine::Edges edges_of(const Task& task) {
+  return task.guide_moves ? SuccessorEngine::Edges::kRefused : SuccessorEngine::Edges::kTaken;
+}
+
 class Planning {
  public:
   Planning(const Task& task, const Start& start, const Rollout& rollout,
@@ -51,9 +56,9 @@ class Planning {
         now_s_(now_s ? now_s : [] { return 0.0; }),
         began_s_(now_s_()),
         pool_(rollout, options.threads),
-        succ_(pool_, search_move(task, start, assumptions_), task.rollout_step_us),
+        succ_(pool_, search_move(task, start, assumptions_), task.rollout_step_us, edges_of(task)),
         long_succ_(pool_, long_move(task, search_move(task, start, assumptions_)),
-                   task.rollout_step_us),
+                   task.rollout_step_us, edges_of(task)),
         judge_(task, start, {options.method, assumptions_, options.draws}, pool_, now_s_) {
     report_.method = options.method;
   }

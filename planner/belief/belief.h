@@ -42,6 +42,11 @@ struct Metric {
 /// What a method plans for: all of the cross-polytope, or the single particle.
 [[nodiscard]] Belief start_belief(const Task& task, const Start& start, PlanMethod method);
 
+/// Up to which latency a plan has to hold in search and judgement. None where the task brings its
+/// own `primitives`, exactly the paper's: a lattice has few ways, and hardly ever one that both a
+/// late and a prompt arm go.
+[[nodiscard]] double latency_to_hold_s(const Task& task, double latency_max_s);
+
 /// The belief in a cell: its contact stiffness, and of its latency the two extremes, none and the
 /// longest, in turns. The first particle, and so a single one, has none; nor has any where the
 /// moves are the task's own choice, and the search learns of late arms from the paths that they

@@ -18,6 +18,8 @@ namespace tenon::planner {
 /// depend on the order of calls, never on the number of threads. One thread at a time.
 class SuccessorEngine {
  public:
+  enum class Edges : std::uint8_t { kRefused, kTaken };
+
   struct Counters {
     std::uint64_t rollouts = 0;   ///< simulated moves
     std::uint64_t memo_hits = 0;  ///< moves that were already known
@@ -25,7 +27,9 @@ class SuccessorEngine {
   };
 
   /// @param pool must outlive this  @param move everything of a move but its displacement
-  SuccessorEngine(RolloutPool& pool, const MoveParameters& move, std::int64_t step_us);
+  /// @param edges whether a move after which a particle rests at an edge exists (edge_rest.h)
+  SuccessorEngine(RolloutPool& pool, const MoveParameters& move, std::int64_t step_us,
+                  Edges edges = Edges::kRefused);
 
   /// One belief for each primitive, in order. Empty where a particle's rollout failed or timed out,
   /// or left it resting at an edge: such a move does not exist. All rollouts that are missing run
@@ -54,6 +58,7 @@ class SuccessorEngine {
   RolloutPool& pool_;
   MoveParameters move_;
   std::int64_t step_us_;
+  Edges edges_;
   std::map<Key, End> memo_;
   Counters counters_;
 };

@@ -112,8 +112,10 @@ std::vector<CertificationVariant> certification_variants(const Task& task, const
     variants.push_back({"lowest friction", task.friction.low, {}, {}, step_us});
     variants.push_back({"highest friction", task.friction.high, {}, {}, step_us});
     if (task.oversize_m > 0.0) variants.push_back({"as drawn", {}, 0.0, {}, step_us});
-    variants.push_back({"no latency", {}, {}, 0.0, step_us});
-    variants.push_back({"longest latency", {}, {}, plan.latency_max_s, step_us});
+    if (const double latency_s = latency_to_hold_s(task, plan.latency_max_s); latency_s > 0.0) {
+      variants.push_back({"no latency", {}, {}, 0.0, step_us});
+      variants.push_back({"longest latency", {}, {}, latency_s, step_us});
+    }
   }
   return variants;
 }

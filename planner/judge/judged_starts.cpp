@@ -16,9 +16,12 @@ double reach_sigmas(const Task& task) { return task.particle_sigmas + 1.0; }
 /// Lowest and highest friction, no latency and the longest, with the part as large as it may be,
 /// then as drawn where that is something else.
 std::vector<PhysicalParameters> corners(const Plan& plan, const Task& task) {
+  std::vector<double> latencies_s = {0.0};
+  const double longest_s = latency_to_hold_s(task, plan.latency_max_s);
+  if (longest_s > 0.0) latencies_s.push_back(longest_s);
   std::vector<PhysicalParameters> all;
   for (const double friction : {task.friction.low, task.friction.high}) {
-    for (const double latency_s : {0.0, plan.latency_max_s}) {
+    for (const double latency_s : latencies_s) {
       all.push_back({friction, plan.contact_stiffness_Npm, task.oversize_m, latency_s});
       if (task.oversize_m == 0.0) continue;
       all.push_back({friction, plan.contact_stiffness_Npm, 0.0, latency_s});
@@ -98,7 +101,7 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
     p.contact_stiffness_Npm = plan.contact_stiffness_Npm;
     p.friction = task.friction.low + random.uniform() * (task.friction.high - task.friction.low);
     if (task.oversize_m > 0.0) p.oversize_m = random.uniform() * task.oversize_m;
-    p.latency_s = late.uniform() * plan.latency_max_s;
+    p.latency_s = late.uniform() * latency_to_hold_s(task, plan.latency_max_s);
     const bool at_corner = physics == DrawnPhysics::kCorners && i % 2 == 1;
     if (at_corner) p = extremes[i / 2 % extremes.size()];
     starts.push_back(drawn);

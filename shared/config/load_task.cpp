@@ -23,7 +23,6 @@ using config::positive_to;
 using config::Value;
 
 constexpr std::size_t kStartsMax = 200;
-constexpr double kSizeMax_m = 100.0;
 constexpr std::uint8_t kTranslations = 0b000111;
 constexpr std::uint8_t kRotations = 0b111000;
 constexpr std::uint8_t kAllAxes = kTranslations | kRotations;
