@@ -160,12 +160,13 @@ class Checker {
     const double contact_mps = set.speeds.contact_mps;
     const double peak_N = peak_force_N(loop_, c, force_on_N, contact_mps);
     if (!(peak_N <= cell_.force_fault_N)) {
-      refuse(format(
-          "parameter set %d: peak force F_on + k_e v (2 (n + 2) T + tau_arm + M / D) = %g + %g * %g "
-          "* (%g + %g + %g) = %g N, must be at most force_fault_N = %g N",
-          static_cast<int>(index), force_on_N, loop_.stiffness_Npm, contact_mps,
-          loop_.blind_s() - loop_.lag_s, loop_.lag_s, c.mass_kg / c.damping_Nspm, peak_N,
-          cell_.force_fault_N));
+      refuse(
+          format("parameter set %d: peak force F_on + k_e v (2 (n + 2) T + tau_arm + M / D) = %g + "
+                 "%g * %g "
+                 "* (%g + %g + %g) = %g N, must be at most force_fault_N = %g N",
+                 static_cast<int>(index), force_on_N, loop_.stiffness_Npm, contact_mps,
+                 loop_.blind_s() - loop_.lag_s, loop_.lag_s, c.mass_kg / c.damping_Nspm, peak_N,
+                 cell_.force_fault_N));
     }
     const double noise_N = cell_.robot.sensor.force_noise_N;
     if (force_on_N * kPlanRounding < 5.0 * noise_N) {

@@ -83,6 +83,11 @@ void ControlTask::report_poor_feedback(std::uint64_t incomplete_cycles) noexcept
   take(Ending{.reason = EndReason::kFeedbackPoor, .value = static_cast<double>(incomplete_cycles)});
 }
 
+ForceLimit ControlTask::force_limit() const noexcept {
+  if (parameters_.masked.masks(EndReason::kForceFault, ArmFaultKind::kNone)) return {};
+  return supervision_.force_limit();
+}
+
 // --- states ---------------------------------------------------------------------------------
 
 // Every change of state is made here. A state can be over as it begins.

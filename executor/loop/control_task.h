@@ -81,6 +81,8 @@ class ControlTask {
   [[nodiscard]] double cycle_s() const noexcept { return cycle_s_; }
   /// Cycles since the tare in which guarded moves could see no sample.
   [[nodiscard]] std::uint64_t blind_cycles() const noexcept { return supervision_.blind_cycles(); }
+  /// At which the arm may stop its drives by itself.
+  [[nodiscard]] ForceLimit force_limit() const noexcept;
   /// Largest external force and torque since the tare, N and Nm.
   [[nodiscard]] double peak_force_N() const noexcept { return supervision_.peak_force_N(); }
   [[nodiscard]] double peak_torque_Nm() const noexcept { return supervision_.peak_torque_Nm(); }

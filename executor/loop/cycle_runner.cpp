@@ -11,6 +11,9 @@ namespace {
 // Periods from one SYNC to the next beyond which the drives have stopped for want of a setpoint.
 constexpr double kLateSync = 1.25;
 
+// Before a cycle is due: more than it takes to be woken by the bus and fall asleep again.
+constexpr std::int64_t kExactWait_ns = 200'000;
+
 std::size_t cycles_in(double duration_s, double cycle_s) {
   return static_cast<std::size_t>(std::max(1.0, std::ceil(duration_s / cycle_s)));
 }
@@ -52,6 +55,7 @@ void CycleRunner::decide(std::int64_t now_ns) noexcept {
   feedback_.state = arm_.state();
   feedback_.fault = arm_.fault();
   const ControlTask::Command command = task_.cycle(now_ns, feedback_);
+  arm_.limit_force(task_.force_limit());
   arm_.command(now_ns, command.request, command.position);
   ++statistics_.cycles;
 }
@@ -77,7 +81,7 @@ void CycleRunner::run(const std::atomic<bool>& stop, Clock& clock) noexcept {
   std::int64_t due_ns = clock.now_ns() + cycle_ns_;
   std::int64_t last_awake_ns = due_ns;
   while (!task_.finished()) {
-    clock.wait_until_ns(due_ns);
+    wait_until(due_ns, clock);
     const std::int64_t awake_ns = clock.now_ns();
     if (stop.load(std::memory_order_relaxed)) task_.request_stop();
     if (awake_ns - last_awake_ns > late_sync_ns) task_.distrust_samples();
@@ -100,6 +104,19 @@ void CycleRunner::run(const std::atomic<bool>& stop, Clock& clock) noexcept {
     publish(awake_ns - due_ns, done_ns - now_ns);
     due_ns = next_due(due_ns, clock.now_ns());
   }
+}
+
+// On the bus, for what may come; the end on the clock, which is the more exact.
+void CycleRunner::wait_until(std::int64_t due_ns, Clock& clock) noexcept {
+  const std::int64_t listened_ns = due_ns - kExactWait_ns;
+  std::int64_t now_ns = clock.now_ns();
+  while (now_ns < listened_ns) {
+    arm_.wait(listened_ns - now_ns);
+    now_ns = clock.now_ns();
+    // A bus that is gone ends every wait at once.
+    if (!arm_.attend(now_ns)) break;
+  }
+  clock.wait_until_ns(due_ns);
 }
 
 // A late cycle is counted and skips whole periods, so that the phase stays.

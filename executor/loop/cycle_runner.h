@@ -63,6 +63,7 @@ class CycleRunner {
  private:
   void count_answers(bool complete) noexcept;
   void decide(std::int64_t now_ns) noexcept;
+  void wait_until(std::int64_t due_ns, Clock& clock) noexcept;
   void publish(std::int64_t wakeup_late_ns, std::int64_t compute_ns) noexcept;
   [[nodiscard]] std::int64_t next_due(std::int64_t due_ns, std::int64_t now_ns) noexcept;
 

@@ -30,6 +30,11 @@ std::optional<Ending> Supervision::update(const ArmFeedback& feedback, bool foll
   // A jump first: what it leads to is felt and seen later.
   if (jumped) return jumped;
   if (sensor) return sensor;
+  if (feedback.force_stopped_N > 0.0) {
+    return Ending{.reason = EndReason::kForceFault,
+                  .value = feedback.force_stopped_N,
+                  .bound = cell_.force_fault_N};
+  }
   if (arm) return arm;
   return force ? force : astray;
 }
@@ -136,6 +141,11 @@ std::optional<Ending> Supervision::watch_following(const ArmFeedback& feedback, 
                 .index = excess->joint,
                 .value = excess->error,
                 .bound = excess->bound};
+}
+
+ForceLimit Supervision::force_limit() const {
+  if (!tared_) return {};
+  return {wrench_.unloaded_N(), cell_.force_fault_N};
 }
 
 std::optional<Ending> Supervision::watch_force(const ArmFeedback& feedback) {

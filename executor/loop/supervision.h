@@ -55,6 +55,8 @@ class Supervision {
   [[nodiscard]] const Pose& tool() const { return tool_; }
   /// External wrench, task axes at the tool tip; of the last good sample.
   [[nodiscard]] const Vector6& wrench() const { return wrench_.external(); }
+  /// At which an arm may stop its drives by itself.
+  [[nodiscard]] ForceLimit force_limit() const;
   /// It is a fresh sample, and guarded moves may see it.
   [[nodiscard]] bool wrench_usable() const { return wrench_usable_; }
   /// Cycles since the tare in which guarded moves could see no sample.

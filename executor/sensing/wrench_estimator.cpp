@@ -41,6 +41,7 @@ Vector3 WrenchEstimator::com_acceleration_mps2(const Vector3& to_com_T) const {
 
 void WrenchEstimator::tare(const Vector6& mean_raw, const Pose& X_TP) {
   bias_ = mean_raw - payload_wrench(R_TS(X_TP).conjugate() * gravity_T_mps2_);
+  unloaded_ = mean_raw;
   external_.setZero();
 }
 
@@ -56,8 +57,8 @@ WrenchEstimator::Status WrenchEstimator::update(const Vector6& raw, const Pose& 
   const Eigen::Quaterniond rotation = R_TS(X_TP);
   const Vector3 to_com_T = rotation * (com_S_m_ - X_SP_.position_m);
   const Vector3 com_mps2 = com_acceleration_mps2(to_com_T);
-  const Vector6 contact =
-      raw - bias_ - payload_wrench(rotation.conjugate() * (gravity_T_mps2_ - com_mps2));
+  unloaded_ = bias_ + payload_wrench(rotation.conjugate() * (gravity_T_mps2_ - com_mps2));
+  const Vector6 contact = raw - unloaded_;
 
   // The same wrench about the tool tip instead of the sensor's origin.
   const Vector3 force_N = contact.head<3>();

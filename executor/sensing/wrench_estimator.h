@@ -38,6 +38,9 @@ class WrenchEstimator {
 
   /// What the sensor reads of itself, by the last tare; its axes, N and Nm.
   [[nodiscard]] const Vector6& bias() const { return bias_; }
+  /// What the sensor reads while nothing touches, its axes, N: itself and the payload, as of the
+  /// last good sample or the tare.
+  [[nodiscard]] Vector3 unloaded_N() const { return unloaded_.head<3>(); }
   /// Of the last good sample: what the environment does to the tool, N and Nm.
   [[nodiscard]] const Vector6& external() const { return external_; }
   /// The axis that saturated.
@@ -58,6 +61,7 @@ class WrenchEstimator {
   double torque_range_Nm_;
   PayloadMotion motion_;
   Vector6 bias_ = Vector6::Zero();
+  Vector6 unloaded_ = Vector6::Zero();
   Vector6 external_ = Vector6::Zero();
   int axis_ = 0;
 };

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include "hw/arm/cob_ids.h"
 #include "hw/canopen/emergency.h"
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/object_setting.h"
 #include "hw/cia402/drive_state.h"
+#include "shared/base/bytes.h"
 #include "shared/canopen/constants.h"
 
 namespace tenon::hw {
@@ -35,8 +37,9 @@ void ArmIntake::reset() noexcept {
     joint.reset();
   }
   pairing_.reset();
+  limit_ = {};
   feedback_ = {};
-  cycle_open_ = false;
+  cycle_open_ = wrench_late_ = false;
   halves_seen_ = 0;
 }
 
@@ -48,11 +51,12 @@ void ArmIntake::forget_freshness() noexcept {
 
 void ArmIntake::open_cycle(std::int64_t now_ns, CanBus& bus) noexcept {
   // A wrench that came late is still the newest; a joint's late answer is not this cycle's.
-  feedback_.wrench_fresh = false;
+  feedback_.wrench_fresh = wrench_late_;
   forget_freshness();
   cycle_open_ = false;
-  drain(now_ns, bus);
+  (void)drain(now_ns, bus);
   forget_freshness();
+  wrench_late_ = false;
   cycle_open_ = true;
   feedback_.sync_ns = now_ns;
 }
@@ -68,11 +72,14 @@ bool ArmIntake::complete() const noexcept {
          halves_seen_ == kBothHalves;
 }
 
-void ArmIntake::drain(std::int64_t now_ns, CanBus& bus) noexcept {
+int ArmIntake::drain(std::int64_t now_ns, CanBus& bus) noexcept {
   ReceivedFrame received;
-  for (int i = 0; i < kMaxFramesPerCall && bus.receive(received); ++i) {
+  int taken = 0;
+  while (taken < kMaxFramesPerCall && bus.receive(received)) {
     take(received.frame, now_ns);
+    ++taken;
   }
+  return taken;
 }
 
 void ArmIntake::take(const CanFrame& frame, std::int64_t now_ns) noexcept {
@@ -125,6 +132,7 @@ void ArmIntake::take_wrench_half(WrenchPairing::Half half, const CanFrame& frame
     supervision_.take_wrong_length(sensor_.node, frame.length);
     return;
   }
+  if (half == WrenchPairing::Half::kForce) judge_force(frame);
   counters_.late_frames += cycle_open_ ? 0 : 1;
   halves_seen_ = static_cast<std::uint8_t>(halves_seen_ | (1u << static_cast<unsigned>(half)));
   const std::uint64_t torn_before = pairing_.torn();
@@ -133,6 +141,18 @@ void ArmIntake::take_wrench_half(WrenchPairing::Half half, const CanFrame& frame
   if (sample && !sample->repeated) {
     take_wrench(*sample);
   }
+}
+
+// The force alone tells: its other half, and whether it is new, need not be waited for.
+void ArmIntake::judge_force(const CanFrame& frame) noexcept {
+  const std::span<const std::uint8_t> bytes(frame.data);
+  Vector3 force_N;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    force_N[static_cast<Eigen::Index>(axis)] =
+        sensor_.force_per_count_N * load_le<std::int16_t>(bytes.subspan(2 * axis));
+  }
+  const double external_N = (force_N - limit_.unloaded_N).norm();
+  if (external_N > limit_.limit_N) supervision_.force_exceeded(external_N);
 }
 
 void ArmIntake::take_wrench(const WrenchPairing::Sample& sample) noexcept {
@@ -150,6 +170,7 @@ void ArmIntake::take_wrench(const WrenchPairing::Sample& sample) noexcept {
     }
     feedback_.wrench[static_cast<Eigen::Index>(i)] = value;
   }
+  wrench_late_ = !cycle_open_;
   feedback_.wrench_counter = sample.counter;
   feedback_.wrench_fresh = true;
 }

@@ -36,12 +36,17 @@ class ArmIntake {
   /// Forgets all that was heard.
   void reset() noexcept;
   void open_cycle(std::int64_t now_ns, CanBus& bus) noexcept;
-  void drain(std::int64_t now_ns, CanBus& bus) noexcept;
+  /// @return frames taken
+  int drain(std::int64_t now_ns, CanBus& bus) noexcept;
+  /// Judges every force from now on, in its frame.
+  void limit_force(const ForceLimit& limit) noexcept { limit_ = limit; }
   /// A frame of the bus.
   void take(const CanFrame& frame, std::int64_t now_ns) noexcept;
   /// False: none was open.
   bool close_cycle() noexcept;
 
+  /// A cycle waits for its answers.
+  [[nodiscard]] bool cycle_open() const noexcept { return cycle_open_; }
   /// Whether everything that this cycle expects is there.
   [[nodiscard]] bool complete() const noexcept;
   /// State and fault are the supervision's to fill in.
@@ -51,6 +56,7 @@ class ArmIntake {
   void forget_freshness() noexcept;
   [[nodiscard]] bool take_process_data(const CanFrame& frame) noexcept;
   void take_wrench_half(WrenchPairing::Half half, const CanFrame& frame) noexcept;
+  void judge_force(const CanFrame& frame) noexcept;
   void take_wrench(const WrenchPairing::Sample& sample) noexcept;
 
   const std::span<JointChannel> joints_;
@@ -60,9 +66,11 @@ class ArmIntake {
   ArmSupervision& supervision_;
   ArmCounters& counters_;
 
+  ForceLimit limit_;
   WrenchPairing pairing_;
   ArmFeedback feedback_;
   bool cycle_open_ = false;
+  bool wrench_late_ = false;      ///< one has come since the last cycle closed
   std::uint8_t halves_seen_ = 0;  ///< this cycle: bit 0 force, bit 1 torque
 };
 

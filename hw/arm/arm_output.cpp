@@ -1,7 +1,11 @@
 #include "hw/arm/arm_output.h"
 
+#include <span>
+
+#include "hw/arm/cob_ids.h"
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/sync.h"
+#include "shared/base/bytes.h"
 #include "shared/base/time_units.h"
 #include "shared/canopen/constants.h"
 
@@ -70,6 +74,14 @@ void ArmOutput::send_packed_setpoints() noexcept {
       if (second != nullptr) supervision_.setpoint_refused(i + 1);
     }
   }
+}
+
+void ArmOutput::send_stop() noexcept {
+  CanFrame frame;
+  frame.id = kStopCobId;
+  frame.length = 2;
+  store_le(std::span(frame.data), tenon::canopen::kCommandQuickStop);
+  send(frame);
 }
 
 void ArmOutput::send_heartbeat(std::int64_t now_ns) noexcept {

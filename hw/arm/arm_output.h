@@ -29,6 +29,8 @@ class ArmOutput {
   /// @param follow `position` (m or rad), else where each joint is. A joint that has not been heard
   /// of is sent nothing: nothing is known that could be a safe target.
   void send_setpoints(ArmRequest request, bool follow, const JointVector& position) noexcept;
+  /// All drives at once, where they have an RPDO for it.
+  void send_stop() noexcept;
   /// Where it is due.
   void send_heartbeat(std::int64_t now_ns) noexcept;
 

@@ -38,6 +38,8 @@ ArmSupervision::ArmSupervision(const Robot& robot, std::span<const JointChannel>
 void ArmSupervision::reset() noexcept {
   state_ = ArmState::kUnconfigured;
   fault_ = {};
+  force_stopped_N_ = 0.0;
+  stop_due_ = false;
 }
 
 void ArmSupervision::begin(std::int64_t now_ns) noexcept {
@@ -90,6 +92,19 @@ void ArmSupervision::check_bus(const CanBusStatus& status) noexcept {
 void ArmSupervision::bus_lost(const CanBusStatus& status) noexcept {
   check_bus(status);
   raise({ArmFaultKind::kBusDown, 0, 0, 0});
+}
+
+void ArmSupervision::force_exceeded(double force_N) noexcept {
+  const bool on = state_ == ArmState::kEnabling || state_ == ArmState::kEnabled;
+  if (!on || force_stopped_N_ > 0.0) return;
+  force_stopped_N_ = force_N;
+  stop_due_ = true;
+}
+
+bool ArmSupervision::take_stop() noexcept {
+  const bool due = stop_due_;
+  stop_due_ = false;
+  return due;
 }
 
 void ArmSupervision::take_heartbeat(const canopen::Heartbeat& heartbeat,
@@ -219,7 +234,8 @@ void ArmSupervision::check_feedback(const ArmFeedback& feedback) noexcept {
   }
 }
 
-void ArmSupervision::advance(std::int64_t now_ns, ArmRequest request) noexcept {
+void ArmSupervision::advance(std::int64_t now_ns, ArmRequest wanted) noexcept {
+  const ArmRequest request = granted(wanted);
   check_drives(request);
   if (state_ == ArmState::kFault) {
     return;
@@ -229,7 +245,9 @@ void ArmSupervision::advance(std::int64_t now_ns, ArmRequest request) noexcept {
       return enable(now_ns);
     case ArmRequest::kDisabled:
     case ArmRequest::kQuickStop:
-      return enter_state(none_energised() ? ArmState::kDisabled : ArmState::kStopping, now_ns);
+      enter_state(none_energised() ? ArmState::kDisabled : ArmState::kStopping, now_ns);
+      if (wanted == ArmRequest::kDisabled && state_ == ArmState::kDisabled) force_stopped_N_ = 0.0;
+      return;
   }
 }
 
@@ -269,7 +287,8 @@ void ArmSupervision::enable(std::int64_t now_ns) noexcept {
 }
 
 ArmRequest ArmSupervision::granted(ArmRequest request) const noexcept {
-  if (state_ != ArmState::kFault || request == ArmRequest::kDisabled) {
+  const bool stopped = state_ == ArmState::kFault || force_stopped_N_ > 0.0;
+  if (!stopped || request == ArmRequest::kDisabled) {
     return request;
   }
   return ArmRequest::kQuickStop;

@@ -66,6 +66,8 @@ class ArmSupervision {
   }
   /// It was this joint's setpoint. @param joint its place
   void setpoint_refused(std::size_t joint) noexcept { unsent_[joint] = true; }
+  /// Beyond the limit: the drives stop, and are not enabled again before all are off.
+  void force_exceeded(double force_N) noexcept;
   void take_heartbeat(const canopen::Heartbeat& heartbeat, std::int64_t now_ns) noexcept;
   void take_emergency(const canopen::Emergency& emergency) noexcept;
   /// Process data of another length than their mapping's. @param data_bytes that came
@@ -80,8 +82,13 @@ class ArmSupervision {
   /// After all of the cycle's frames. @param status of the bus: what it took and then dropped, too
   void check_sending(const CanBusStatus& status) noexcept;
   /// Holds the drives against what is asked, and goes on towards it.
-  void advance(std::int64_t now_ns, ArmRequest request) noexcept;
-  /// What the drives are asked instead: in a fault they stop, and are not enabled.
+  void advance(std::int64_t now_ns, ArmRequest wanted) noexcept;
+  /// Once after force_exceeded(): the stop is to leave now.
+  [[nodiscard]] bool take_stop() noexcept;
+  /// The force for which all drives are stopped, N; 0: they are not.
+  [[nodiscard]] double force_stopped_N() const noexcept { return force_stopped_N_; }
+  /// What the drives are asked instead: in a fault, and beyond the limit of the force, they stop,
+  /// and are not enabled.
   [[nodiscard]] ArmRequest granted(ArmRequest request) const noexcept;
 
  private:
@@ -105,6 +112,8 @@ class ArmSupervision {
   ArmState state_ = ArmState::kUnconfigured;
   std::int64_t entered_ns_ = 0;
   ArmFault fault_;
+  double force_stopped_N_ = 0.0;
+  bool stop_due_ = false;
   canopen::HeartbeatWatch watch_;
   std::array<std::uint32_t, kMaxJoints> missing_cycles_{};  ///< in a row
   std::array<std::uint16_t, kMaxJoints> warned_{};          ///< last error code that only warned

@@ -67,19 +67,42 @@ void CanopenArm::start_cycle(std::int64_t now_ns) noexcept {
     return;
   }
   intake_.open_cycle(now_ns, bus_);
+  stop_if_due(true);
   ++counters_.cycles;
   output_.send_sync();
 }
 
 bool CanopenArm::receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept {
   if (state() != ArmState::kUnconfigured) {
-    intake_.drain(now_ns, bus_);
+    (void)intake_.drain(now_ns, bus_);
+    stop_if_due(!intake_.cycle_open());
     supervision_.check_bus(bus_.status());
   }
   feedback = intake_.feedback();
+  feedback.force_stopped_N = supervision_.force_stopped_N();
   feedback.state = state();
   feedback.fault = fault();
   return intake_.complete();
+}
+
+bool CanopenArm::attend(std::int64_t now_ns) noexcept {
+  if (state() == ArmState::kUnconfigured) {
+    return false;
+  }
+  const bool heard = intake_.drain(now_ns, bus_) > 0;
+  stop_if_due(true);
+  return heard;
+}
+
+void CanopenArm::stop_if_due(bool setpoints_wait) noexcept {
+  if (!supervision_.take_stop()) {
+    return;
+  }
+  output_.send_stop();
+  if (setpoints_wait) {
+    output_.send_setpoints(ArmRequest::kQuickStop, false, {});
+  }
+  bus_.flush();
 }
 
 void CanopenArm::command(std::int64_t now_ns, ArmRequest request,

@@ -7,6 +7,9 @@
 //   receive       TPDO1 of every joint, the two halves of the wrench
 //   command       supervision, state machine, RPDOs of every joint, the master's heartbeat
 //
+// A force beyond its limit stops all drives as its frame is heard, in the cycle or between two, by
+// one frame; nothing enables them again before all are off.
+//
 //   bus --> ArmIntake --> ArmSupervision --> ArmOutput --> bus
 //
 // The state machine stands in hw/arm/arm_supervision.h; prepare() leads out of kUnconfigured and
@@ -46,6 +49,8 @@ class CanopenArm : public Arm {
   [[nodiscard]] bool receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept override;
   void command(std::int64_t now_ns, ArmRequest request,
                const JointVector& position) noexcept override;
+  void limit_force(const ForceLimit& limit) noexcept override { intake_.limit_force(limit); }
+  bool attend(std::int64_t now_ns) noexcept override;
   void wait(std::int64_t at_most_ns) noexcept override { bus_.wait(at_most_ns); }
   [[nodiscard]] ArmState state() const noexcept override { return supervision_.state(); }
   [[nodiscard]] ArmFault fault() const noexcept override { return supervision_.fault(); }
@@ -56,6 +61,8 @@ class CanopenArm : public Arm {
 
  private:
   void run_bring_up(std::int64_t now_ns);
+  /// @param setpoints_wait setpoints have left that act with the next SYNC
+  void stop_if_due(bool setpoints_wait) noexcept;
 
   CanBus& bus_;
   BringUp bring_up_;

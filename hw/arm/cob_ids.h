@@ -5,6 +5,7 @@
 //   | COB-ID     | frame                                            |
 //   | 181h       | force, first because contact is decided from it  |
 //   | 182h       | torque                                           |
+//   | 183h       | controlword of all drives at once, acts when it arrives |
 //   | 190h + i   | TPDO1 of joint i = 0, 1, ...: what it does       |
 //   | 200h + n   | RPDO1 of node n, as predefined: what it shall do |
 //   | 300h + n   | RPDO2 of node n, as predefined: controlword      |
@@ -26,6 +27,7 @@ namespace tenon::hw {
 
 inline constexpr std::uint32_t kForceCobId = 0x181;
 inline constexpr std::uint32_t kTorqueCobId = 0x182;
+inline constexpr std::uint32_t kStopCobId = 0x183;
 inline constexpr std::uint32_t kJointFeedbackCobId = 0x190;
 
 /// @param joint its place in the robot's order

@@ -16,6 +16,7 @@ OtherMaster::OtherMaster(const Robot& robot) {
   masters_own_.set(tenon::canopen::kNmt);
   masters_own_.set(tenon::canopen::kSync);
   masters_own_.set(tenon::canopen::kHeartbeat + robot.master_node);
+  masters_own_.set(kStopCobId);
   for (const Joint& joint : robot.joints) {
     masters_own_.set(joint_command_cob_id(joint.node));
     masters_own_.set(joint_controlword_cob_id(joint.node));

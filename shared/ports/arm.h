@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "shared/math/pose.h"
 
@@ -59,6 +60,12 @@ struct ArmFault {
   bool refused = false;      ///< of kConfiguration: code is an abort code, and no value
 };
 
+/// A force at which an arm stops all drives by itself, as soon as it hears of it.
+struct ForceLimit {
+  Vector3 unloaded_N = Vector3::Zero();  ///< what the sensor reads of itself and the payload
+  double limit_N = std::numeric_limits<double>::infinity();  ///< greatest distance from that
+};
+
 struct ArmFeedback {
   std::int64_t sync_ns = 0;  ///< the cycle that this belongs to
   JointVector position{};
@@ -69,6 +76,9 @@ struct ArmFeedback {
       Vector6::Zero();        ///< what acts on the load beyond the sensor, in sensor axes, raw
   bool wrench_fresh = false;  ///< a new, whole sample
   std::uint16_t wrench_counter = 0;
+  /// The force, N, at which the arm has stopped its drives by itself; 0: it has not. They stay
+  /// stopped until all are off.
+  double force_stopped_N = 0.0;
   ArmState state = ArmState::kUnconfigured;
   ArmFault fault;
 };
@@ -96,6 +106,13 @@ class Arm {
   /// the drives are not enabled the positions are ignored and the actual ones are sent.
   virtual void command(std::int64_t now_ns, ArmRequest request,
                        const JointVector& position) noexcept = 0;
+
+  /// From now on, until the next call. Without effect where the arm or its drives cannot: whoever
+  /// calls looks at every wrench all the same.
+  virtual void limit_force(const ForceLimit& /*limit*/) noexcept {}
+  /// Takes in what comes between cycles; nothing of it is this cycle's feedback. True: there was
+  /// something.
+  virtual bool attend(std::int64_t /*now_ns*/) noexcept { return false; }
 
   /// Waits for the bus, at most so long. Returns at once in lockstep.
   virtual void wait(std::int64_t at_most_ns) noexcept = 0;

@@ -22,6 +22,7 @@ class FrameSender {
     if (frame.extended) return 0;
     const auto given = given_.find(frame.id);
     if (given != given_.end()) return given->second;
+    if (taken_.contains(frame.id)) return master_node_;
     const auto node = static_cast<std::uint8_t>(frame.id & 0x7Fu);
     const std::uint32_t function = frame.id & 0x780u;
     const bool process_data = function >= canopen::kTpdo1 && function < canopen::kSdoResponse;
