@@ -1,5 +1,6 @@
 #include "hw/arm/bring_up.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

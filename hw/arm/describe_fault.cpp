@@ -273,6 +273,12 @@ std::string describe(const SettingNote& note, const Robot& robot) {
     case SettingNote::Kind::kOther:
       return line + format(" holds 0x%X (%u) where 0x%X (%u) was written; taken as it is",
                            note.found, note.found, note.wanted, note.wanted);
+    case SettingNote::Kind::kNoStop:
+      return node_name(note.node, robot) +
+             format(
+                 "has no free RPDO by which all drives are stopped at once: beyond "
+                 "force_fault_N it stops with the next SYNC, up to %g ms after the others",
+                 1e-3 * robot.cycle_us);
     case SettingNote::Kind::kTaken:
       return line + format(" = 0x%X (%u), left as it is", note.found, note.found) +
              (note.found == note.wanted ? "" : format(" (by the book 0x%X)", note.wanted));

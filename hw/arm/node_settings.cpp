@@ -74,15 +74,27 @@ void append_receive_pdos(Settings& settings, const Robot& robot, std::size_t ind
                                  {controlword}});
 }
 
+/// The first RPDO that no setpoint needs.
+std::uint8_t stop_rpdo(const Robot& robot) { return robot.targets_per_frame == 1 ? 2 : 3; }
+
 /// What a device sends or acts on unasked.
 void append_unused_pdos(Settings& settings, const Robot& robot, const Joint& joint) {
   using Direction = PdoConfiguration::Direction;
-  for (std::uint8_t number = robot.targets_per_frame == 1 ? 2 : 3; number <= 4; ++number) {
+  for (auto number = static_cast<std::uint8_t>(stop_rpdo(robot) + 1); number <= 4; ++number) {
     canopen::append_unused_pdo(settings, Direction::kReceive, joint.node, number);
   }
   for (std::uint8_t number = 2; number <= 4; ++number) {
     canopen::append_unused_pdo(settings, Direction::kTransmit, joint.node, number);
   }
+}
+
+/// The controlword of all drives at once.
+void append_stop_pdo(Settings& settings, const Robot& robot) {
+  canopen::append_optional_pdo(settings, {PdoConfiguration::Direction::kReceive,
+                                          stop_rpdo(robot),
+                                          kStopCobId,
+                                          canopen::kAtOnce,
+                                          {{tenon::canopen::kControlword, 0, 16}}});
 }
 
 [[noreturn]] void refuse(const Robot& robot, const std::string& what) {
@@ -179,6 +191,7 @@ Settings joint_settings(const Robot& robot, std::size_t index) {
   append_drive_objects(settings, robot, joint, DriveObject::kMasterWatch,
                        DriveObject::kPositionMax);
   append_receive_pdos(settings, robot, index);
+  append_stop_pdo(settings, robot);
   canopen::append_pdo(settings,
                       {PdoConfiguration::Direction::kTransmit,
                        1,

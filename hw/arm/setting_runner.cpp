@@ -1,5 +1,6 @@
 #include "hw/arm/setting_runner.h"
 
+#include <algorithm>
 #include <array>
 
 #include "shared/base/bytes.h"
@@ -56,7 +57,7 @@ SettingRunner::State SettingRunner::update(std::int64_t now_ns, CanBus& bus) {
   if (state_ == State::kFailed || transfer_ != Transfer::kNone) {
     return state_;
   }
-  while (task_ < tasks_.size() && same_ && tasks_[task_].setting.action == Action::kWriteIfOther) {
+  while (task_ < tasks_.size() && is_spared(tasks_[task_])) {
     next_task();
   }
   if (task_ == tasks_.size()) {
@@ -74,6 +75,7 @@ void SettingRunner::start_transfer(const SettingTask& task, std::int64_t now_ns,
     case Action::kWrite:
     case Action::kWriteOrTake:
     case Action::kWriteIfOther:
+    case Action::kTry:
       return start_writing(task, now_ns, bus);
     case Action::kCompare:
     case Action::kExpect:
@@ -126,6 +128,9 @@ void SettingRunner::finish_refused(const SettingTask& task, std::int64_t now_ns,
   if (action == Action::kRecord) {
     return next_task();
   }
+  if (action == Action::kTry) {
+    return give_up(task);
+  }
   if (absent) {
     note(SettingNote::Kind::kAbsent, task, 0);
     return next_task();
@@ -153,10 +158,14 @@ void SettingRunner::finish_reading(const SettingTask& task, std::int64_t now_ns,
     case Action::kExpect:
     case Action::kAwait:
     case Action::kWriteIfOther:
+    case Action::kTry:
       break;
   }
   if (task.setting.matches(found)) {
     return next_task();
+  }
+  if (task.setting.action == Action::kTry) {
+    return give_up(task);
   }
   if (task.setting.action == Action::kAwait && now_ns - task_started_ns_ < kAwaitTimeout_ns) {
     return start_reading(task, now_ns, bus);
@@ -177,6 +186,19 @@ void SettingRunner::finish_comparing(bool same) {
   same_ = same && (same_ || !comparing_);
   next_task();
   comparing_ = true;
+}
+
+void SettingRunner::give_up(const SettingTask& task) {
+  notes_.push_back({SettingNote::Kind::kNoStop, task.node, task.setting.object()});
+  next_task();
+}
+
+bool SettingRunner::is_spared(const SettingTask& task) const {
+  if (task.setting.action == Action::kWriteIfOther) return same_;
+  return task.setting.action == Action::kTry &&
+         std::any_of(notes_.begin(), notes_.end(), [&](const SettingNote& note) {
+           return note.kind == SettingNote::Kind::kNoStop && note.node == task.node;
+         });
 }
 
 void SettingRunner::next_task() {

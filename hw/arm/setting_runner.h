@@ -30,6 +30,7 @@ struct SettingNote {
     kAbsent,  ///< it has no such object
     kOther,   ///< it made another value of the one written
     kTaken,   ///< its value was taken as it is
+    kNoStop,  ///< it has no RPDO by which all drives are stopped at once
   };
   Kind kind = Kind::kAbsent;
   std::uint8_t node = 0;
@@ -74,6 +75,8 @@ class SettingRunner {
   void finish_reading(const SettingTask& task, std::int64_t now_ns, CanBus& bus);
   void finish_comparing(bool same);
   void next_task();
+  void give_up(const SettingTask& task);
+  [[nodiscard]] bool is_spared(const SettingTask& task) const;
   void note(SettingNote::Kind kind, const SettingTask& task, std::uint32_t found);
   void record(const SettingTask& task, std::uint32_t value);
   void send(const CanFrame& frame, CanBus& bus);

@@ -20,6 +20,7 @@ struct ObjectSetting {
     kRecord,        ///< read it where that can be, whatever it holds
     kCompare,       ///< read it and remember whether it, and those compared just before, are so
     kWriteIfOther,  ///< as kWrite, unless all that was compared last is so already
+    kTry,           ///< as kWrite; a node that refuses one is spared all others of these
   };
   Action action = Action::kWrite;
   std::uint16_t index = 0;

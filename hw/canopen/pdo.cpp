@@ -73,6 +73,16 @@ void append_pdo(std::vector<ObjectSetting>& settings, const PdoConfiguration& pd
   append_communication_on(settings, communication, cob_id, pdo, freedom);
 }
 
+void append_optional_pdo(std::vector<ObjectSetting>& settings, const PdoConfiguration& pdo) {
+  std::vector<ObjectSetting> all;
+  append_pdo(all, pdo, {});
+  for (ObjectSetting& setting : all) {
+    if (setting.action == Action::kCompare) continue;
+    setting.action = Action::kTry;
+    settings.push_back(setting);
+  }
+}
+
 void append_unused_pdo(std::vector<ObjectSetting>& settings, PdoConfiguration::Direction direction,
                        std::uint8_t node, std::uint8_t number) {
   const bool transmit = direction == PdoConfiguration::Direction::kTransmit;

@@ -44,6 +44,9 @@ struct PdoFreedom {
 void append_pdo(std::vector<ObjectSetting>& settings, const PdoConfiguration& pdo,
                 const PdoFreedom& freedom = {});
 
+/// Of one that a node can do without: left switched off where the node refuses any of it.
+void append_optional_pdo(std::vector<ObjectSetting>& settings, const PdoConfiguration& pdo);
+
 /// Switches a PDO off that nobody asked for, where the node has it.
 void append_unused_pdo(std::vector<ObjectSetting>& settings, PdoConfiguration::Direction direction,
                        std::uint8_t node, std::uint8_t number);

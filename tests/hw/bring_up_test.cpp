@@ -43,10 +43,11 @@ TEST(BringUp, WritesTheDriveThisConfigurationInThisOrder) {
       {0x606600, 10},                                                          // 10 ms
       {0x140001, 0x80000202}, {0x140002, 1},          {0x160000, 0},
       {0x160001, 0x60400010}, {0x160002, 0x607A0020}, {0x160000, 2},
-      {0x140001, 0x00000202}, {0x180001, 0xC0000191}, {0x180002, 1},
+      {0x140001, 0x00000202}, {0x140101, 0x80000183}, {0x140102, 255},  // the stop of all drives
+      {0x160100, 0},          {0x160101, 0x60400010}, {0x160100, 1},
+      {0x140101, 0x00000183}, {0x180001, 0xC0000191}, {0x180002, 1},
       {0x1A0000, 0},          {0x1A0001, 0x60410010}, {0x1A0002, 0x60770010},
       {0x1A0003, 0x60640020}, {0x1A0000, 3},          {0x180001, 0x40000191},
-      {0x140101, 0x80000302},  // a second RPDO that nobody needs
       {0x180101, 0xC0000282},  // the second TPDO that it had on
   };
   EXPECT_EQ(written, expected);
@@ -135,8 +136,9 @@ TEST(BringUp, AFixedMappingThatIsTheOneWantedIsTakenAsItIs) {
   for (const auto& write : gantry.nodes[0]->writes) {
     if (write.object >> 8 >= 0x1400 && write.object >> 8 < 0x1C00) pdos.push_back(write.object);
   }
-  EXPECT_EQ(pdos, (std::vector<std::uint32_t>{0x140001, 0x140002, 0x140001, 0x180001, 0x180002,
-                                              0x180001, 0x140101, 0x180101}));
+  EXPECT_EQ(pdos, (std::vector<std::uint32_t>{0x140001, 0x140002, 0x140001, 0x140101, 0x140102,
+                                              0x160100, 0x160101, 0x160100, 0x140101, 0x180001,
+                                              0x180002, 0x180001, 0x180101}));
   JointVector target = gantry.feedback.position;
   target[0] += 0.001;
   for (int i = 0; i < 3; ++i) gantry.cycle(ArmRequest::kEnabled, target);
@@ -149,6 +151,22 @@ TEST(BringUp, AFixedMappingThatIsAnotherIsNamed) {
   EXPECT_EQ(failure(gantry),
             "node 1 (x): its PDO mapping 1600h is fixed (abort 0x06010002) and another than "
             "hw/PROTOCOL.md lists; a joint's depends on mode and targets_per_frame");
+}
+
+// What it refuses of that is left switched off: half a mapping would be none.
+TEST(BringUp, ADriveWithoutAnRpdoForTheStopIsBroughtUpWithoutItAndNamed) {
+  for (const std::uint32_t object : {0x140101U, 0x160100U, 0x160101U}) {
+    GantryOnBus gantry;
+    gantry.nodes[1]->refuses[object] = object == 0x140101U ? 0x06020000U : 0x06010002U;
+    ASSERT_TRUE(gantry.prepare_and_enable()) << describe(gantry.arm.fault(), gantry.robot);
+    const std::vector<SettingNote>& notes = gantry.arm.bring_up().notes();
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_EQ(describe(notes.front(), gantry.robot),
+              "node 2 (y): has no free RPDO by which all drives are stopped at once: beyond "
+              "force_fault_N it stops with the next SYNC, up to 2 ms after the others");
+    EXPECT_NE(gantry.nodes[1]->objects[0x140101].value & 0x80000000U, 0U);
+    EXPECT_EQ(gantry.nodes[0]->objects[0x140101].value, 0x183U);
+  }
 }
 
 TEST(BringUp, ValueThatIsNotKeptIsNoticedOnReadBack) {
