@@ -3,12 +3,16 @@
 // its brakes. Below a detector's threshold the forged amount counts as allowed.
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <iterator>
 #include <map>
 #include <string>
 
@@ -118,6 +122,55 @@ void run_all_drawn(const char* robot, std::uint64_t count) {
   EXPECT_EQ(tally.wrong, 0);
   EXPECT_GT(tally.done, 0);
   EXPECT_GT(tally.stopped, 0);
+}
+
+/// What a process holds.
+struct Held {
+  std::size_t descriptors = 0;
+  std::size_t threads = 0;
+  std::size_t heap_bytes = 0;
+};
+
+Held held() {
+  const auto entries = [](const char* folder) {
+    const std::filesystem::directory_iterator all(folder);
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+  };
+  return {entries("/proc/self/fd"), entries("/proc/self/task"), ::mallinfo2().uordblks};
+}
+
+// Runs back to back, a fault at a random moment of each: every one ends and is accounted for, and
+// what the process holds after them is no more than what it held after some of the first.
+void soak(std::chrono::seconds duration) {
+  constexpr std::uint64_t kFirst = 20;
+  const auto end = std::chrono::steady_clock::now() + duration;
+  const Ground ground("gantry3");
+  Tally tally;
+  Held first;
+  std::uint64_t number = 0;
+  while (number < 2 * kFirst || std::chrono::steady_clock::now() < end) {
+    run_drawn(ground, ++number, tally);
+    const Held now = held();
+    if (number <= kFirst) {
+      first = {now.descriptors, now.threads, std::max(first.heap_bytes, now.heap_bytes)};
+      continue;
+    }
+    ASSERT_EQ(now.descriptors, first.descriptors) << "run " << number;
+    ASSERT_EQ(now.threads, first.threads) << "run " << number;
+  }
+  // A drawn fault may have a longer text than any before: a page.
+  constexpr std::size_t kPage_bytes = 4096;
+  EXPECT_LE(held().heap_bytes, first.heap_bytes + kPage_bytes);
+  std::printf("%llu runs back to back: %d done, %d stopped by name, %zu bytes held, %zu at first\n",
+              static_cast<unsigned long long>(number), tally.done, tally.stopped, held().heap_bytes,
+              first.heap_bytes);
+  EXPECT_EQ(static_cast<std::uint64_t>(tally.done + tally.stopped), number);
+}
+
+TEST(Soak, RunsBackToBackLeaveNothingBehind) { soak(std::chrono::seconds(20)); }
+
+TEST(ManyRandomFaults, TenMinutesOfRunsBackToBackLeaveNothingBehind) {
+  soak(std::chrono::minutes(10));
 }
 
 TEST(RandomFaults, AHundredAreRiddenOutOrNamed) { run_all_drawn("gantry3", 100); }
