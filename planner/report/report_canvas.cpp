@@ -55,6 +55,9 @@ std::string Canvas::open(int width_px) const {
 }
 
 std::string Canvas::section(const Shape& shape, double depth_m, const std::string& style) const {
+  if (shape.solid) {
+    return area(drawing::section_of(*shape.solid, shape.pose, view_, depth_m), "evenodd", style);
+  }
   const drawing::Prism prism = prism_of(shape, Pose{});
   std::vector<Point> points;
   const auto cut = [&](std::size_t i, std::size_t j) {
@@ -74,9 +77,24 @@ std::string Canvas::section(const Shape& shape, double depth_m, const std::strin
 }
 
 std::string Canvas::shadow(const Shape& shape, const Pose& frame, const std::string& style) const {
+  if (shape.solid) {
+    return area(drawing::shadow_of(*shape.solid, compose(frame, shape.pose), view_), "nonzero",
+                style);
+  }
   std::vector<Point> points;
   for (const Vector3& corner : prism_of(shape, frame).corners_m) points.push_back(view_.m(corner));
   return polygon(std::move(points), style);
+}
+
+std::string Canvas::area(const drawing::Loops& loops, const char* rule,
+                         const std::string& style) const {
+  if (loops.empty()) return {};
+  std::string path;
+  for (const std::vector<Point>& loop : loops) {
+    path += "M" + drawing::points_text(on_page(loop), 2) + "Z";
+  }
+  return "<path d='" + path + "' fill-rule='" + rule +
+         format("' stroke-width='%.2f' ", 2.0 * unit_mm()) + style + "/>\n";
 }
 
 std::string Canvas::polygon(std::vector<Point> points_m, const std::string& style) const {

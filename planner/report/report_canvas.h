@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/drawing/silhouette.h"
 #include "shared/drawing/view.h"
 #include "shared/task/task.h"
 
@@ -31,6 +32,9 @@ class Canvas {
  private:
   using Point = drawing::Point;
 
+  /// What closed lines enclose together.
+  [[nodiscard]] std::string area(const drawing::Loops& loops, const char* rule,
+                                 const std::string& style) const;
   /// The hull.
   [[nodiscard]] std::string polygon(std::vector<Point> points_m, const std::string& style) const;
   [[nodiscard]] double unit_mm() const { return high_.x() - low_.x(); }

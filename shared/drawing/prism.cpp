@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "shared/geometry/solid.h"
+
 namespace tenon::drawing {
 namespace {
 
@@ -12,9 +14,20 @@ bool turns_left(const Point& a, const Point& b, const Point& c) {
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x() > 0.0;
 }
 
+/// All of its points: their hull is what counts.
+Prism hull_points(const Shape& shape, const Pose& frame) {
+  const Pose pose = compose(frame, shape.pose);
+  Prism prism;
+  for (const Vector3& point_m : shape.solid->mesh().points_m) {
+    prism.corners_m.emplace_back(pose.position_m + pose.orientation * point_m);
+  }
+  return prism;
+}
+
 }  // namespace
 
 Prism prism_of(const Shape& shape, const Pose& frame, int round_sides) {
+  if (shape.solid) return hull_points(shape, frame);
   const bool box = shape.kind == Shape::Kind::kBox;
   const int sides = box ? 4 : round_sides;
   const double reach = box ? std::numbers::sqrt2 : 1.0;

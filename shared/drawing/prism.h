@@ -16,7 +16,8 @@ struct Prism {
   [[nodiscard]] std::size_t sides() const { return corners_m.size() / 2; }
 };
 
-/// A box as it is; a cylinder with so many sides, the corners on its circle.
+/// A box as it is; a cylinder with so many sides, the corners on its circle. Of a solid only the
+/// corners mean something: all its points.
 /// @param frame that the shape's pose is in
 [[nodiscard]] Prism prism_of(const Shape& shape, const Pose& frame, int round_sides);
 

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
+#include <numbers>
 
+#include "shared/geometry/extrusion.h"
 #include "tests/planner/room_task.h"
 
 namespace tenon::planner {
@@ -27,6 +30,21 @@ Canvas from_the_side() {
 
 std::size_t corners(const std::string& polygon) {
   return static_cast<std::size_t>(std::count(polygon.begin(), polygon.end(), ','));
+}
+
+TEST(ReportCanvas, DrawsASolidWithItsHollows) {
+  const auto solid = std::make_shared<const Solid>(
+      extruded({{0, 0}, {0.3, 0}, {0.3, 0.1}, {0.1, 0.1}, {0.1, 0.3}, {0, 0.3}}, 0.2));
+  Shape shape{"angle", Shape::Kind::kSolid, solid->size_m(), {}, solid};
+  shape.pose.orientation = rotation_of({0.5 * std::numbers::pi, 0.0, 0.0});
+  const Canvas canvas = from_the_side();
+  const std::string shadow = canvas.shadow(shape, Pose{}, "fill='red'");
+  EXPECT_TRUE(shadow.starts_with("<path d='M")) << shadow;
+  EXPECT_EQ(corners(shadow), 6U) << shadow;
+  EXPECT_NE(shadow.find("fill-rule='nonzero'"), std::string::npos);
+  EXPECT_NE(shadow.find("fill='red'"), std::string::npos);
+  EXPECT_NE(canvas.section(shape, 0.05, "").find("fill-rule='evenodd'"), std::string::npos);
+  EXPECT_EQ(canvas.section(shape, 0.15, ""), "");
 }
 
 TEST(ReportCanvas, CutsAShapeWhereThePlanePassesThroughItAndNowhereElse) {
