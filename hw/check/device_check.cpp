@@ -33,7 +33,7 @@ const char* access_text(DeviceObject::Access access) {
 
 bool is_written(Action action) {
   return action == Action::kWrite || action == Action::kWriteOrTake ||
-         action == Action::kWriteIfOther;
+         action == Action::kWriteIfOther || action == Action::kTry;
 }
 
 /// A device as its file describes it, while bring-up goes through it.
@@ -68,6 +68,9 @@ class Model {
     line.device = index ? "has no such sub-index" : "has no such object";
     if (line.setting.action == Action::kCompare) {
       remember(line.setting.optional);
+    } else if (line.setting.action == Action::kTry) {
+      line.verdict = Verdict::kOther;
+      line.device += ", brought up without";
     } else if (line.setting.optional) {
       line.device += ", which its profile allows";
     } else {
@@ -91,6 +94,11 @@ class Model {
     }
     line.device += ": " + refusal;
     line.verdict = Verdict::kRefused;
+    if (line.setting.action == Action::kTry) {
+      line.verdict = Verdict::kOther;
+      line.device += ", brought up without";
+      return;
+    }
     if (line.setting.action != Action::kWriteOrTake) return;
     const auto held = value(line.setting, object);
     line.verdict = !held                           ? Verdict::kUnknown
@@ -189,6 +197,8 @@ std::string action_text(const ObjectSetting& setting) {
       return "compare " + value;
     case Action::kWriteIfOther:
       return "write " + value + " if other";
+    case Action::kTry:
+      return "try " + value;
   }
   return "";
 }

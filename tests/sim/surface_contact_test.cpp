@@ -84,7 +84,7 @@ struct Worlds {
       particle.pose = first.move.pose;
       particle.signature = first.move.signature;
       if (particle.pose.position_m.z() > 0.06)
-        particle = {at(0.001, 0.0, 0.02), {}, particle.physics};
+        particle = {at(0.001, 0.0, 0.02), {}, particle.physics, {}};
     }
     EXPECT_GT(contacts, count / 8);
   }
