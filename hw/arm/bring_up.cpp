@@ -39,16 +39,19 @@ BringUp::BringUp(const Robot& robot)
     }
   };
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-    add_node(robot.joints[i].node, robot.joints[i].drive.boot_s, joint_settings(robot, i));
+    const Joint& joint = robot.joints[i];
+    add_node(joint.node, joint.drive.boot_s, joint_settings(robot, i));
+    if (!takes_stop(joint.drive)) known_.push_back({SettingNote::Kind::kNoStop, joint.node});
   }
   add_node(robot.sensor.node, boot_s(robot, robot.sensor.node), sensor_settings(robot));
+  runner_.reset(known_);
 }
 
 void BringUp::restart() {
   state_ = State::kListen;
   entered_ns_.reset();
   fault_ = {};
-  runner_.reset();
+  runner_.reset(known_);
 }
 
 void BringUp::process(const CanFrame& frame, std::int64_t now_ns, CanBus& bus) {

@@ -82,6 +82,7 @@ class BringUp {
   std::vector<Node> nodes_;
   std::vector<SettingTask> announce_;
   std::vector<SettingTask> configure_;
+  std::vector<SettingNote> known_;  ///< before any node is asked
   canopen::HeartbeatWatch watch_;
   SettingRunner runner_;
 

@@ -193,6 +193,13 @@ std::string setpoint(const ArmFault& fault) {
       fault.code);
 }
 
+std::string feedback_missing(const ArmFault& fault) {
+  return format(
+      "no feedback (TPDO1) in %u cycles in a row, at most %u are allowed; check bus load and "
+      "wiring",
+      fault.code, ArmSupervision::kMissingCycles);
+}
+
 /// Of a frame that betrays another master (hw/arm/other_master.h).
 const char* master_frame_name(std::uint32_t cob_id) {
   if (cob_id == tenon::canopen::kNmt) return "NMT command";
@@ -223,12 +230,8 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
     case ArmFaultKind::kDriveState:
       return node_name(fault, robot) + drive_state(fault);
     case ArmFaultKind::kFeedbackMissing:
-      return node_name(fault, robot) + (fault.object != 0
-                                            ? wrong_length(fault)
-                                            : format("no feedback (TPDO1) in %u cycles in a row, "
-                                                     "at most %u are allowed; check bus "
-                                                     "load and wiring",
-                                                     fault.code, ArmSupervision::kMissingCycles));
+      return node_name(fault, robot) +
+             (fault.object != 0 ? wrong_length(fault) : feedback_missing(fault));
     case ArmFaultKind::kSensorStale:
       return node_name(fault, robot) +
              (fault.object != 0

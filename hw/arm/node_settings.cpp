@@ -38,6 +38,15 @@ canopen::PdoEntry target_of(const Joint& joint) {
              : canopen::PdoEntry{tenon::canopen::kTargetPosition, 0, 32};
 }
 
+}  // namespace
+
+bool takes_stop(const DriveProfile& drive) {
+  const canopen::PdoFreedom free = freedom_of(drive);
+  return free.mapping && free.identifier && free.transmission_type;
+}
+
+namespace {
+
 void append_receive_pdos(Settings& settings, const Robot& robot, std::size_t index) {
   using Direction = PdoConfiguration::Direction;
   const Joint& joint = robot.joints[index];
@@ -191,7 +200,7 @@ Settings joint_settings(const Robot& robot, std::size_t index) {
   append_drive_objects(settings, robot, joint, DriveObject::kMasterWatch,
                        DriveObject::kPositionMax);
   append_receive_pdos(settings, robot, index);
-  append_stop_pdo(settings, robot);
+  if (takes_stop(joint.drive)) append_stop_pdo(settings, robot);
   canopen::append_pdo(settings,
                       {PdoConfiguration::Direction::kTransmit,
                        1,

@@ -18,6 +18,9 @@ namespace tenon::hw {
 /// The first setting of every node, because bring-up needs to hear it: heartbeat producer time.
 [[nodiscard]] canopen::ObjectSetting heartbeat_setting(const Robot& robot);
 
+/// Whether a drive's PDOs can be set, so that one of them takes the stop of all drives.
+[[nodiscard]] bool takes_stop(const DriveProfile& drive);
+
 /// @param index of the joint in the robot's order
 [[nodiscard]] std::vector<canopen::ObjectSetting> joint_settings(const Robot& robot,
                                                                  std::size_t index);

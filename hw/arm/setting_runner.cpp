@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "shared/base/bytes.h"
 #include "shared/canopen/constants.h"
@@ -19,8 +20,8 @@ bool says_absent(std::uint32_t abort_code) {
 
 }  // namespace
 
-void SettingRunner::reset() {
-  notes_.clear();
+void SettingRunner::reset(std::vector<SettingNote> notes) {
+  notes_ = std::move(notes);
   identities_.clear();
   start({});
 }

@@ -52,8 +52,8 @@ class SettingRunner {
   enum class State : std::uint8_t { kRunning, kDone, kFailed };
   static constexpr std::int64_t kAwaitTimeout_ns = 500'000'000;
 
-  /// Forgets notes and identities.
-  void reset();
+  /// Forgets notes and identities. @param notes what is known before any device is asked
+  void reset(std::vector<SettingNote> notes = {});
   /// @param tasks outlive the run
   void start(std::span<const SettingTask> tasks);
   void process(const CanFrame& frame, std::int64_t now_ns, CanBus& bus);

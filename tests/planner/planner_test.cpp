@@ -193,7 +193,8 @@ TEST(Planner, IsJudgedByDrawsThatItsSearchHasNotSeen) {
 }
 
 TEST(Planner, APlanThatDiesByTheArmsLatencyIsRefuted) {
-  const Task task = room_task();
+  Task task = room_task();
+  task.guide_moves = true;
   const Plan plan = *planned(task).plan;
   WallRollout::World world = room();
   world.x_gain_late_mps = 1.0;  // 10 mm at the 10 ms that the plan allows

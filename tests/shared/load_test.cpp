@@ -277,7 +277,7 @@ TEST(LoadRobot, RefusesEachBadLineWithItsPlace) {
        ":15: joints[1].name = screws, must be a revolute or prismatic joint of slide.urdf"},
       {"name: x", "name: turn", ":15: joints[1].name = turn, must be listed once"},
       {"    mode: 8\n", "    mode: 8\n    axis: [1, 0, 0]\n",
-       ":18: joints[1].axis: is an unknown key, known here: name, node, mode, zero_counts, "
+       ":18: joints[1].axis: is an unknown key, known here: name, node, drive, mode, zero_counts, "
        "counts_per_m, acceleration_max_mps2, rated_effort_N, following_error_max_m, stiffness_Npm"},
       {"counts_per_m: -1e6", "counts_per_m: 0",
        ":18: joints[1].counts_per_m = 0, must be other than 0"},

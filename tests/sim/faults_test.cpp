@@ -128,9 +128,9 @@ TEST(FrameSender, OverhearsWhichIdentifierAMasterGivesToANode) {
   EXPECT_EQ(sender.node_of(frame_of(0x191)), 0x11);
   sender.overhear(frame_of(0x603, {0x23, 0x00, 0x18, 0x01, 0x91, 0x01, 0x00, 0x40}));
   EXPECT_EQ(sender.node_of(frame_of(0x191)), 3);
-  // An RPDO's identifier gives nobody a frame to send.
+  // What a node takes the master sends.
   sender.overhear(frame_of(0x603, {0x23, 0x00, 0x14, 0x01, 0x92, 0x01, 0x00, 0x00}));
-  EXPECT_EQ(sender.node_of(frame_of(0x192)), 0x12);
+  EXPECT_EQ(sender.node_of(frame_of(0x192)), 127);
 }
 
 TEST(FrameSender, KnowsWhatAFrameIsByWhatItHasOverheard) {

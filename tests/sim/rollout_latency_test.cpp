@@ -21,10 +21,17 @@ Task plate_and_wall() {
   return task;
 }
 
+/// Nothing turns the tool.
+MoveParameters straight() {
+  MoveParameters move;
+  move.compliance.compliant_axes = 0b000111;
+  return move;
+}
+
 Particle resting_on_the_plate(OdeRollout& rollout, double latency_s) {
   Particle particle;
   particle.pose.position_m = {-0.05, 0.0, 0.01};
-  MoveParameters down;
+  MoveParameters down = straight();
   down.displacement.z() = -0.03;
   const RolloutResult onto = rollout.simulate(particle, down, 2000, nullptr);
   particle.pose = onto.move.pose;
@@ -35,7 +42,7 @@ Particle resting_on_the_plate(OdeRollout& rollout, double latency_s) {
 
 GuardedMove::Result along_x(double latency_s, const Particle& from, OdeRollout& rollout,
                             std::int64_t step_us = 2000) {
-  MoveParameters move;
+  MoveParameters move = straight();
   move.displacement.x() = 0.15;
   Particle particle = from;
   particle.physics.latency_s = latency_s;

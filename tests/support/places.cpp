@@ -1,5 +1,6 @@
 #include "tests/support/places.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
@@ -10,6 +11,15 @@ namespace tenon::tests {
 std::string in_tree(const std::string& path) { return TENON_SOURCE_DIR "/" + path; }
 
 std::string executable(const std::string& name) { return TENON_BIN_DIR "/" + name; }
+
+std::vector<std::string> task_files() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(in_tree("planner/tasks"))) {
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
 
 std::string shared_plan(const std::string& name) {
   std::string file = TENON_PLANS_DIR "/" + name + ".tnp";

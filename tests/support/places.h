@@ -3,6 +3,7 @@
 // repository's own, so that what a test unit is compiled to does not depend on where it stands.
 
 #include <string>
+#include <vector>
 
 namespace tenon::tests {
 
@@ -10,6 +11,8 @@ namespace tenon::tests {
 [[nodiscard]] std::string in_tree(const std::string& path);
 /// One of the executables, such as "tenon-plan".
 [[nodiscard]] std::string executable(const std::string& name);
+/// Every task file that ships, sorted.
+[[nodiscard]] std::vector<std::string> task_files();
 /// The file of a plan that the build makes, see tests/plans/.
 /// @throws std::runtime_error where it is not there
 [[nodiscard]] std::string shared_plan(const std::string& name);
