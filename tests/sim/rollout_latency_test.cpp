@@ -83,8 +83,9 @@ TEST(RolloutLatency, HalfTheIntegrationStepSeesTheSameLatency) {
   OdeRollout rollout(plate_and_wall());
   const Particle start = resting_on_the_plate(rollout, 0.0);
   for (const double latency_s : {0.0, 0.007, kLatency_s}) {
+    // The edge is noticed a step earlier or later: 0.1 mm at contact speed, and what that settles.
     EXPECT_NEAR(along_x(latency_s, start, rollout, 1000).pose.position_m.x(),
-                along_x(latency_s, start, rollout, 2000).pose.position_m.x(), 1e-4)
+                along_x(latency_s, start, rollout, 2000).pose.position_m.x(), 1.1e-4)
         << latency_s;
   }
 }
