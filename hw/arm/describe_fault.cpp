@@ -269,7 +269,7 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
 }
 
 std::string describe(const SettingNote& note, const Robot& robot) {
-  const std::string line = node_name(note.node, robot) + object_name(note.object);
+  std::string line = node_name(note.node, robot) + object_name(note.object);
   switch (note.kind) {
     case SettingNote::Kind::kAbsent:
       return line + " does not exist; its profile allows that";

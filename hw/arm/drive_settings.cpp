@@ -197,7 +197,8 @@ std::vector<std::string> drive_remarks(const Robot& robot) {
     }
     told.push_back(joint.drive.name);
     for (const std::string& remark : remarks_of(joint.drive)) {
-      lines.push_back("joints " + joints + " (drive " + joint.drive.name + "): " + remark);
+      lines.push_back(format("joints %s (drive %s): %s", joints.c_str(), joint.drive.name.c_str(),
+                             remark.c_str()));
     }
   }
   return lines;

@@ -55,7 +55,7 @@ std::optional<Vector3> meeting(const TriangleMesh& mesh, std::uint32_t i, std::u
     const std::uint32_t from = t[k];
     const std::uint32_t to = t[(k + 1) % 3];
     if (has_corner(other, from) || has_corner(other, to)) continue;
-    if (const auto at_m = passage(mesh.points_m[from], mesh.points_m[to], c)) return at_m;
+    if (auto at_m = passage(mesh.points_m[from], mesh.points_m[to], c)) return at_m;
   }
   return std::nullopt;
 }

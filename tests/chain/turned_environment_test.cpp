@@ -22,30 +22,30 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 class TurnedEnvironment : public ::testing::Test {
  protected:
-  TurnedEnvironment() { options_.start = task_.starts.front().name; }
+  TurnedEnvironment() { options.start = task.starts.front().name; }
 
   WholeRun::Result run(const Vector6& offset) {
-    options_.offset = offset;
-    return WholeRun(cell_, task_, plan_, options_).run();
+    options.offset = offset;
+    return WholeRun(cell, task, plan, options).run();
   }
 
-  Cell cell_ = shipped_cell("csp6");
-  Task task_ =
-      planner::fit_to_cell(load_task(in_tree("planner/tasks/box_on_table_se2.yaml")), cell_).task;
-  Plan plan_ = load_plan(shared_plan("box_se2_csp6"));
-  WholeRun::Options options_;
+  Cell cell = shipped_cell("csp6");
+  Task task =
+      planner::fit_to_cell(load_task(in_tree("planner/tasks/box_on_table_se2.yaml")), cell).task;
+  Plan plan = load_plan(shared_plan("box_se2_csp6"));
+  WholeRun::Options options;
 };
 
 TEST_F(TurnedEnvironment, TheArmTakesThePlan) {
-  EXPECT_TRUE(executor::check_plan(plan_, cell_).empty());
-  for (const std::string& refusal : executor::dry_run(plan_, cell_).refusals) {
+  EXPECT_TRUE(executor::check_plan(plan, cell).empty());
+  for (const std::string& refusal : executor::dry_run(plan, cell).refusals) {
     ADD_FAILURE() << refusal;
   }
 }
 
 TEST_F(TurnedEnvironment, TheBoxEndsAtItsPlaceAndAsTheTrayLies) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const Vector6 offset = sim::draw_offset(task_.starts.front(), task_.coordinates, seed);
+    const Vector6 offset = sim::draw_offset(task.starts.front(), task.coordinates, seed);
     const WholeRun::Result result = run(offset);
     std::printf(
         "tray off by x %.1f y %.1f mm, rz %.2f deg: %s, %.2f mm and %.3f deg from the goal\n",
@@ -70,7 +70,7 @@ TEST_F(TurnedEnvironment, AtTheRimOfItsReachToo) {
 
 // The same plan with its axes left to the task frame: the box goes beside its place.
 TEST_F(TurnedEnvironment, WithoutTheAxesThatItCarriesTheBoxMissesItsPlace) {
-  plan_.parameter_sets.front().carried_axes = false;
+  plan.parameter_sets.front().carried_axes = false;
   Vector6 offset = Vector6::Zero();
   offset[5] = 0.08;
   EXPECT_FALSE(run(offset).truth.within_tolerance);

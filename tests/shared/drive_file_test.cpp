@@ -20,17 +20,17 @@ namespace {
 class DriveFile : public ::testing::Test {
  protected:
   DriveProfile loaded(const std::string& text) {
-    write_file(folder_.path() / "d.yaml", text);
-    return load_drive(folder_.path() / "d.yaml");
+    write_file(folder.path() / "d.yaml", text);
+    return load_drive(folder.path() / "d.yaml");
   }
   /// Without the folder.
   std::string refused(const std::string& text) {
     const std::string line = tests::refusal([&] { (void)loaded(text); });
-    const std::string before = folder_.path().string() + "/";
+    const std::string before = folder.path().string() + "/";
     return line.starts_with(before) ? line.substr(before.size()) : line;
   }
 
-  tests::ScratchFolder folder_;
+  tests::ScratchFolder folder;
 };
 
 TEST_F(DriveFile, WhatItLeavesOutIsByTheBook) {
@@ -94,9 +94,9 @@ TEST_F(DriveFile, ADriveThatIsNotThereIsRefusedAtTheJoint) {
   for (const std::string& name : {std::string("nobodys"), std::string(5000, 'x')}) {
     std::string other = robot;
     other.replace(other.find("maxon_epos4"), 11, name);
-    write_file(folder_.path() / "robot.yaml", other);
+    write_file(folder.path() / "robot.yaml", other);
     const std::string line =
-        tests::refusal([&] { (void)load_robot(folder_.path() / "robot.yaml"); });
+        tests::refusal([&] { (void)load_robot(folder.path() / "robot.yaml"); });
     EXPECT_NE(line.find("joints[0].drive = "), std::string::npos) << line;
     EXPECT_NE(line.find("does not exist"), std::string::npos) << line;
   }

@@ -28,20 +28,20 @@ class LoadShapes : public testing::Test {
     std::string task = text.str();
     const std::string box = "box_m: [0.10, 0.10, 0.10]";
     task.replace(task.find(box), box.size(), shape);
-    return folder_.put("task.yaml", task);
+    return folder.put("task.yaml", task);
   }
   [[nodiscard]] Task load(const std::string& shape) const { return load_task(put_task(shape)); }
   [[nodiscard]] std::string refused(const std::string& shape) const {
     return tests::refusal([&] { (void)load(shape); });
   }
 
-  tests::ScratchFolder folder_;
+  tests::ScratchFolder folder;
 };
 
 const TriangleMesh kBox = box_mesh({0.10, 0.10, 0.10}, {0.3, 0.0, 0.0});
 
 TEST_F(LoadShapes, AMeshStandsWhereItsFilesOriginDoes) {
-  folder_.put("parts/box.STL", binary_stl(kBox, 1e-3));
+  folder.put("parts/box.STL", binary_stl(kBox, 1e-3));
   const Task task = load("mesh: {file: parts/box.STL, scale: 0.001}");
   const Shape& shape = task.held.front();
   EXPECT_EQ(shape.kind, Shape::Kind::kSolid);
@@ -61,26 +61,26 @@ TEST_F(LoadShapes, AnExtrusionIsDrawnOutAlongItsZ) {
 
 TEST_F(LoadShapes, TheHashCoversWhatTheFileHolds) {
   const std::string shape = "mesh: {file: box.stl, scale: 0.001}";
-  folder_.put("box.stl", binary_stl(kBox, 1e-3));
+  folder.put("box.stl", binary_stl(kBox, 1e-3));
   const std::uint64_t first = load(shape).hash;
   EXPECT_EQ(load(shape).hash, first);
-  folder_.put("box.stl", binary_stl(box_mesh({0.10, 0.10, 0.11}), 1e-3));
+  folder.put("box.stl", binary_stl(box_mesh({0.10, 0.10, 0.11}), 1e-3));
   EXPECT_NE(load(shape).hash, first);
 }
 
 TEST_F(LoadShapes, BadFilesAreRefusedByName) {
-  const std::string here = folder_.path().string();
+  const std::string here = folder.path().string();
   EXPECT_EQ(refused("mesh: {file: none.stl, scale: 1}"),
             here + "/none.stl: cannot be read: No such file or directory");
-  folder_.put("part.step", "ISO-10303-21;");
+  folder.put("part.step", "ISO-10303-21;");
   EXPECT_EQ(refused("mesh: {file: part.step, scale: 1}"),
             here + "/part.step: must be an STL or OBJ file: its name must end in .stl or .obj");
   TriangleMesh open = kBox;
   open.triangles.pop_back();
-  folder_.put("open.stl", binary_stl(open, 1e-3));
+  folder.put("open.stl", binary_stl(open, 1e-3));
   EXPECT_THAT(refused("mesh: {file: open.stl, scale: 0.001}"),
               HasSubstr("/open.stl: 3 edges have a triangle on one side only, the first at ("));
-  folder_.put("box.stl", binary_stl(kBox, 1e-3));
+  folder.put("box.stl", binary_stl(kBox, 1e-3));
   EXPECT_THAT(refused("mesh: {file: box.stl, scale: 1}"), HasSubstr("is scale right?"));
   EXPECT_THAT(refused("mesh: {file: box.stl}"), HasSubstr("scale"));
   EXPECT_THAT(refused("mesh: {file: box.stl, scale: 0}"), HasSubstr("must be in (0, 1000]"));
