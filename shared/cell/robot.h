@@ -26,7 +26,7 @@ struct Joint {
   Vector3 axis = Vector3::UnitX();  ///< unit, in the joint frame
   std::uint8_t node = 0;            ///< CANopen node id, 1..127
   Mode mode = Mode::kCyclicSynchronousPosition;
-  DriveProfile drive;   ///< what its drive has and lacks
+  DriveProfile drive;            ///< what its drive has and lacks
   double counts_per_unit = 0.0;  ///< per m or rad; negative where the drive counts backwards
   double zero_counts = 0.0;      ///< counts at position 0
   double lower = 0.0;            ///< m or rad

@@ -289,7 +289,7 @@ void Reader::read_access(const IniSection& section, DeviceObject& object) {
 /// The value that a type's bits hold: FFFFh of an INTEGER16 is -1, and -1 of an UNSIGNED16 FFFFh.
 std::int64_t Reader::fitted(const DeviceObject& object, std::int64_t value, const IniValue& from) {
   const unsigned bits = data_type_bits(object.type);
-  if (bits >= 64) return value;
+  if (bits > 62) return value;
   const std::int64_t span = std::int64_t{1} << bits;
   const bool is_signed = is_signed_type(object.type);
   const std::int64_t low = is_signed ? -span / 2 : 0;

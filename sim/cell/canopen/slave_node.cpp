@@ -93,15 +93,15 @@ void SlaveNode::add_sync_objects() {
                      {.name = "Communication cycle period", .type = kU32, .access = kReadWrite});
   sync_window_ = add(canopen::kSyncWindow,
                      {.name = "Synchronous window length", .type = kU32, .access = kReadWrite});
-  sync_overflow_ =
-      add(canopen::kSyncOverflow, {.name = "Synchronous counter overflow value",
-                          .type = kU8,
-                          .access = kReadWrite,
-                          .high = 240,
-                          .on_write = [this](std::int64_t value) {
-                            if (value == 1) return canopen::kAbortValue;
-                            return sync_period_->value != 0 ? canopen::kAbortDeviceState : 0;
-                          }});
+  sync_overflow_ = add(canopen::kSyncOverflow,
+                       {.name = "Synchronous counter overflow value",
+                        .type = kU8,
+                        .access = kReadWrite,
+                        .high = 240,
+                        .on_write = [this](std::int64_t value) {
+                          if (value == 1) return canopen::kAbortValue;
+                          return sync_period_->value != 0 ? canopen::kAbortDeviceState : 0;
+                        }});
 }
 
 void SlaveNode::add_heartbeat_objects() {
