@@ -99,6 +99,7 @@ class Checker {
   void check_turning_set(std::size_t index) {
     const ParameterSet& set = plan_.parameter_sets[index];
     const Compliance& c = plan_.compliance;
+    if ((c.compliant_axes & set.sensed_axes) >> 3 == 0) return;  // no torque is waited for
     const double torque_on_Nm = set.thresholds.torque_on_Nm;
     const double noise_Nm = cell_.robot.sensor.torque_noise_Nm;
     if (torque_on_Nm * kPlanRounding < 5.0 * noise_Nm) {
@@ -121,19 +122,23 @@ class Checker {
   // Of what pushes against the step itself, every axis must be watched.
   void check_watch(std::size_t index) {
     const Step& step = plan_.steps[index];
-    const ContactSignature mask = plan_.parameter_sets[step.parameter_set].trigger_mask;
+    const ParameterSet& set = plan_.parameter_sets[step.parameter_set];
+    const ContactSignature mask = set.trigger_mask;
     for (int axis = 0; axis < 6; ++axis) {
       if (step.displacement[axis] == 0.0) continue;
       const int push = step.displacement[axis] > 0.0 ? -1 : 1;
-      const bool feels = (plan_.compliance.compliant_axes >> axis & 1U) != 0;
+      const bool yields = (plan_.compliance.compliant_axes >> axis & 1U) != 0;
+      // A rotation may go unsensed: what turns the tool is not waited for.
+      const bool feels = yields && (axis >= 3 || (set.sensed_axes >> axis & 1U) != 0);
       if (feels && mask.has(axis, push)) continue;
       const std::string way = format("step %d moves along %c%s, ", static_cast<int>(index),
                                      push > 0 ? '-' : '+', axis_name(axis));
       refuse(way +
              (feels ? "and its trigger mask (" + to_string(mask) + ") lacks " +
                           to_string(ContactSignature{ContactSignature::bit(axis, push)})
-                    : "which does not yield (compliant: " +
-                          axis_list(plan_.compliance.compliant_axes) + ")") +
+              : yields ? "which is not sensed (sensed: " + axis_list(set.sensed_axes) + ")"
+                       : "which does not yield (compliant: " +
+                             axis_list(plan_.compliance.compliant_axes) + ")") +
              ": a contact there would not be noticed");
     }
   }

@@ -119,6 +119,7 @@ void ArmSupervision::take_heartbeat(const canopen::Heartbeat& heartbeat,
 void ArmSupervision::take_emergency(const canopen::Emergency& emergency) noexcept {
   ++counters_.emergencies;
   if (canopen::is_warning(emergency)) {
+    forget_warning(emergency);
     return;
   }
   const std::uint32_t error_code = object_of(tenon::canopen::kErrorCode);
@@ -145,6 +146,14 @@ void ArmSupervision::take_emergency(const canopen::Emergency& emergency) noexcep
   } else if (state_ != ArmState::kDisabled) {
     // Drives that are off keep their fault until enabling resets it.
     raise({ArmFaultKind::kDriveFault, emergency.node, error_code, emergency.code});
+  }
+}
+
+// What a drive has warned of and taken back is no cause of a later fault.
+void ArmSupervision::forget_warning(const canopen::Emergency& emergency) noexcept {
+  if (emergency.code != 0) return;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (joints_[i].node() == emergency.node) warned_[i] = 0;
   }
 }
 

@@ -97,6 +97,7 @@ class ArmSupervision {
   void check_silence(const ArmFeedback& feedback) noexcept;
   void check_unsent(bool dropped) noexcept;
   void enable(std::int64_t now_ns) noexcept;
+  void forget_warning(const canopen::Emergency& emergency) noexcept;
   void raise_of_drive(ArmFaultKind kind, std::size_t joint) noexcept;
   void raise_missing(ArmFaultKind kind, std::uint8_t node, std::uint32_t cycles,
                      std::uint8_t wrong_length) noexcept;

@@ -89,7 +89,8 @@ std::uint8_t stop_rpdo(const Robot& robot) { return robot.targets_per_frame == 1
 /// What a device sends or acts on unasked.
 void append_unused_pdos(Settings& settings, const Robot& robot, const Joint& joint) {
   using Direction = PdoConfiguration::Direction;
-  for (auto number = static_cast<std::uint8_t>(stop_rpdo(robot) + 1); number <= 4; ++number) {
+  const int first = stop_rpdo(robot) + (takes_stop(joint.drive) ? 1 : 0);
+  for (auto number = static_cast<std::uint8_t>(first); number <= 4; ++number) {
     canopen::append_unused_pdo(settings, Direction::kReceive, joint.node, number);
   }
   for (std::uint8_t number = 2; number <= 4; ++number) {
@@ -163,7 +164,7 @@ void check_fixed(const Robot& robot) {
                         "targets_per_frame: 1");
     }
     const std::uint32_t id = joint_feedback_cob_id(robot, i);
-    bool taken = id == kForceCobId || id == kTorqueCobId;
+    bool taken = id == kForceCobId || id == kTorqueCobId || id == kStopCobId;
     for (std::size_t k = 0; k < robot.joints.size(); ++k) {
       taken = taken || (k != i && joint_feedback_cob_id(robot, k) == id);
     }

@@ -190,6 +190,7 @@ TEST(DriveProfile, FixedPdosAreComparedAndNeverWritten) {
   drive.fixed_mapping = drive.fixed_identifiers = drive.fixed_transmission_types = true;
   Robot robot = gantry_robot();
   robot.joints[2].drive = drive;
+  robot.joints[2].node = 7;
   GantryOnBus gantry(robot);
   ScriptedNode& node = *gantry.nodes[2];
   node.default_mapping = {{0x160000, 2},          {0x160001, 0x60400010}, {0x160002, 0x607A0020},
@@ -203,7 +204,10 @@ TEST(DriveProfile, FixedPdosAreComparedAndNeverWritten) {
   target[2] += 0.002;
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(gantry.cycle(ArmRequest::kEnabled, target));
   EXPECT_EQ(node.target_counts, 2000);
-  EXPECT_EQ(joint_feedback_cob_id(robot, 2), 0x183u);
+  EXPECT_EQ(joint_feedback_cob_id(robot, 2), 0x187u);
+  // At node 3 it would answer where the stop of all drives is heard.
+  robot.joints[2].node = 3;
+  EXPECT_THROW(GantryOnBus{robot}, InputError);
 }
 
 TEST(DriveProfile, AFixedTransmissionTypeThatIsNotOfSyncIsNamed) {
