@@ -35,6 +35,8 @@ std::size_t steps_of(double latency_s, std::int64_t task_step_us, std::int64_t s
   return static_cast<std::size_t>(static_cast<std::int64_t>(whole) * task_step_us / step_us);
 }
 
+}  // namespace
+
 /// What a move sees of the plant, so many steps late.
 class LateView {
  public:
@@ -64,8 +66,6 @@ class LateView {
   std::size_t now_ = 0;  ///< to be written next: the oldest once the ring is full
   bool full_ = false;
 };
-
-}  // namespace
 
 struct OdeRollout::Physics {
   explicit Physics(const Task& task)
