@@ -10,9 +10,9 @@ namespace tenon::executor {
 namespace {
 
 // A first-order lag has come to 5 % of the way within three of its time constants.
-constexpr double kLags = 3.0;
+constexpr double kFollowedLags = 3.0;
 // A command that is lost or late is made up for by the next.
-constexpr double kCommandsLost = 4.0;
+constexpr double kFollowedLost = 4.0;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ FollowingWatch::FollowingWatch(const Robot& robot) : joint_count_(robot.joints.s
     bound_[i] = bound > 0.0 ? bound : std::numeric_limits<double>::infinity();
   }
   const double cycle_s = 1e-6 * robot.cycle_us;
-  const double window = std::ceil(kLags * robot.response_lag_s / cycle_s) + kCommandsLost;
+  const double window = std::ceil(kFollowedLags * robot.response_lag_s / cycle_s) + kFollowedLost;
   window_ = static_cast<std::size_t>(std::clamp(window, 1.0, static_cast<double>(kWindowMost)));
   cycles_max_ = static_cast<int>(std::ceil(kFollowingPatience_s / cycle_s));
 }
