@@ -23,38 +23,39 @@ std::string refused(const tests::Profile& profile) {
   return tests::refusal([&] { (void)extruded(profile, 0.01); });
 }
 
-const TriangleMesh kBox = box_mesh({0.01, 0.02, 0.03});
+const TriangleMesh kCheckedBox = box_mesh({0.01, 0.02, 0.03});
 
 TEST(MeshCheck, BodiesPass) {
-  EXPECT_NO_THROW(check_mesh(kBox));
+  EXPECT_NO_THROW(check_mesh(kCheckedBox));
   EXPECT_NO_THROW(check_mesh(extruded(tests::round_profile(0.01, 40), 0.03)));
   EXPECT_NO_THROW(check_mesh(extruded({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 0.5)));
   // Clockwise, too.
   EXPECT_NO_THROW(check_mesh(extruded({{0, 3}, {1, 3}, {1, 1}, {3, 1}, {3, 0}, {0, 0}}, 0.5)));
   // A hollow, and two bodies beside each other.
-  EXPECT_NO_THROW(check_mesh(together(kBox, turned_about(box_mesh({0.005, 0.005, 0.005})))));
-  EXPECT_NO_THROW(check_mesh(together(kBox, box_mesh({0.01, 0.01, 0.01}, {0.05, 0, 0}))));
+  EXPECT_NO_THROW(check_mesh(together(kCheckedBox, turned_about(box_mesh({0.005, 0.005, 0.005})))));
+  EXPECT_NO_THROW(check_mesh(together(kCheckedBox, box_mesh({0.01, 0.01, 0.01}, {0.05, 0, 0}))));
 }
 
 TEST(MeshCheck, WhatIsNoBodyIsRefused) {
   EXPECT_THAT(refused(TriangleMesh{}), HasSubstr("has no triangle"));
 
-  TriangleMesh open = kBox;
+  TriangleMesh open = kCheckedBox;
   open.triangles.pop_back();
   EXPECT_THAT(refused(open), HasSubstr("3 edges have a triangle on one side only, the first at "));
   EXPECT_THAT(refused(open), HasSubstr("the surface is open; close its holes"));
 
-  EXPECT_THAT(refused(turned_about(kBox)), HasSubstr("is inside out, its volume -6000 mm3 at ("));
+  EXPECT_THAT(refused(turned_about(kCheckedBox)),
+              HasSubstr("is inside out, its volume -6000 mm3 at ("));
 
-  TriangleMesh partly = kBox;
+  TriangleMesh partly = kCheckedBox;
   std::swap(partly.triangles[3][0], partly.triangles[3][1]);
   EXPECT_THAT(refused(partly), HasSubstr("edges lie between triangles that face opposite ways"));
 
-  TriangleMesh doubled = kBox;
+  TriangleMesh doubled = kCheckedBox;
   doubled.triangles.push_back(doubled.triangles.front());
   EXPECT_THAT(refused(doubled), HasSubstr("edges of triangles are shared by more than two"));
 
-  TriangleMesh infinite = kBox;
+  TriangleMesh infinite = kCheckedBox;
   infinite.points_m[3].y() = std::numeric_limits<double>::infinity();
   EXPECT_THAT(refused(infinite), HasSubstr("a coordinate is not a finite number"));
 
@@ -67,12 +68,13 @@ TEST(MeshCheck, WhatIsNoBodyIsRefused) {
 }
 
 TEST(MeshCheck, WhatMeetsItselfIsRefused) {
-  EXPECT_THAT(refused(together(kBox, box_mesh({0.02, 0.01, 0.01}))),
+  EXPECT_THAT(refused(together(kCheckedBox, box_mesh({0.02, 0.01, 0.01}))),
               HasSubstr("of its triangles go through others, the first at ("));
-  EXPECT_THAT(refused(together(kBox, box_mesh({0.001, 0.001, 0.001}))),
+  EXPECT_THAT(refused(together(kCheckedBox, box_mesh({0.001, 0.001, 0.001}))),
               HasSubstr("a shell of 1 mm3 at (-0.5000, -0.5000, -0.5000) mm lies inside another"));
-  EXPECT_THAT(refused(together(kBox, turned_about(box_mesh({0.01, 0.01, 0.01}, {0.05, 0, 0})))),
-              HasSubstr("is inside out, its volume -1000 mm3"));
+  EXPECT_THAT(
+      refused(together(kCheckedBox, turned_about(box_mesh({0.01, 0.01, 0.01}, {0.05, 0, 0})))),
+      HasSubstr("is inside out, its volume -1000 mm3"));
   // Two boxes at one corner.
   EXPECT_THAT(refused(welded(together(box_mesh({0.01, 0.01, 0.01}),
                                       box_mesh({0.01, 0.01, 0.01}, {0.01, 0.01, 0.01})))),
