@@ -33,6 +33,8 @@ if(TENON_SANITIZERS)
   # Several files compiled as one take a quarter of the time. The builds without sanitizers compile each by
   # itself, for the linters' sake and ccache's.
   set(CMAKE_UNITY_BUILD ON)
+  # A local name may then be one that another of the files has at namespace scope.
+  add_compile_options(-Wno-shadow)
   # Instrumented code makes GCC take an empty std::optional for an uninitialised value; the builds
   # without sanitizers keep this warning.
   add_compile_options(-Wno-maybe-uninitialized)

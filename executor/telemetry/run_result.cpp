@@ -100,6 +100,7 @@ RunResult common_result(const ControlTask& task, const Plan& plan, const CycleRu
   const Ending& ending = task.ending();
   RunResult result;
   result.reason = ending.reason;
+  result.arm_fault = ending.arm_fault.kind;
   result.message = describe(ending, plan, task.cell(), arm_fault_text);
   result.disable_confirmed = task.finished() && ending.disable_confirmed;
   result.statistics = runner.statistics();
@@ -185,6 +186,9 @@ std::string to_json(const RunResult& result, const Cell& cell) {
                {"duration_s", result.duration_s},
                {"peak_force_N", result.peak_force_N},
                {"peak_torque_Nm", result.peak_torque_Nm}};
+  if (result.reason == EndReason::kArmFault) {
+    json["arm_fault"] = fault_row(result.reason, result.arm_fault)->arm_fault_name;
+  }
   json["steps"] = Json::array();
   for (const StepReport& report : result.steps) json["steps"].push_back(json_of(report));
   if (result.finding) json["finding"] = json_of(*result.finding);

@@ -18,7 +18,8 @@ namespace tenon::executor {
 struct RunResult {
   int exit_code = 1;  ///< 0: the plan is done, or something identified, and the arm is disabled
   EndReason reason = EndReason::kNone;
-  std::string message;  ///< one line
+  ArmFaultKind arm_fault = ArmFaultKind::kNone;  ///< where the reason is the arm's
+  std::string message;                           ///< one line
   bool disable_confirmed = false;
   std::string task;  ///< of a plan
   std::string start;

@@ -17,12 +17,6 @@
 namespace tenon::hw {
 namespace {
 
-std::string failure(GantryOnBus& gantry) {
-  EXPECT_FALSE(gantry.prepare());
-  EXPECT_EQ(gantry.arm.state(), ArmState::kFault);
-  return describe(gantry.arm.fault(), gantry.robot);
-}
-
 TEST(BringUp, WritesTheDriveThisConfigurationInThisOrder) {
   GantryOnBus gantry;
   ASSERT_TRUE(gantry.prepare()) << describe(gantry.arm.fault(), gantry.robot);
@@ -94,7 +88,7 @@ TEST(BringUp, NodeThatDoesNotAnswerIsNamedWithWhatWasExpected) {
   GantryOnBus gantry;
   gantry.nodes[2]->dead = true;
   const std::int64_t start_ns = gantry.now_ns;
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 3 (z): no boot-up within 1.0 s, nor within as long after a second NMT reset; "
             "expected 0x703; check power, wiring, bit rate, node id, and boot_s of its drive's "
             "profile");
@@ -112,7 +106,7 @@ TEST(BringUp, NodeThatWakesLateIsResetOnceMore) {
 TEST(BringUp, RefusedObjectIsNamedWithItsAbort) {
   GantryOnBus gantry;
   gantry.nodes[0]->refuses[0x60C201] = 0x06090030;
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 1 (x): refused 60C2h:1 = 0x2: value out of range (abort 0x06090030); check the "
             "device's manual and firmware, and the profile of its drive");
 }
@@ -148,7 +142,7 @@ TEST(BringUp, AFixedMappingThatIsTheOneWantedIsTakenAsItIs) {
 TEST(BringUp, AFixedMappingThatIsAnotherIsNamed) {
   GantryOnBus gantry;
   fix_mapping(*gantry.nodes[0], 0x60C10120);  // where mode 8 needs 607Ah
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 1 (x): its PDO mapping 1600h is fixed (abort 0x06010002) and another than "
             "hw/PROTOCOL.md lists; a joint's depends on mode and targets_per_frame");
 }
@@ -173,7 +167,7 @@ TEST(BringUp, ADriveWithoutAnRpdoForTheStopIsBroughtUpWithoutItAndNamed) {
 TEST(BringUp, ValueThatIsNotKeptIsNoticedOnReadBack) {
   GantryOnBus gantry;
   gantry.nodes[1]->keeps[0x606500] = 0;
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 2 (y): holds 6065h:0 = 0x0 where 0x1388 was asked for; check the device's "
             "limits and firmware");
 }
@@ -181,7 +175,7 @@ TEST(BringUp, ValueThatIsNotKeptIsNoticedOnReadBack) {
 TEST(BringUp, DriveWithoutTheModeIsRefused) {
   GantryOnBus gantry;
   gantry.nodes[0]->keeps[0x650200] = 0x43;
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 1 (x): does not support the robot file's mode of operation (6502h = 0x43, bit "
             "mask 0x80 is missing); set the joint's mode to 8 or 7 as the drive offers");
 }
@@ -190,7 +184,7 @@ TEST(BringUp, ModeThatIsNeverDisplayedEndsAfterHalfASecond) {
   GantryOnBus gantry;
   gantry.nodes[0]->keeps[0x606100] = 0;
   const std::int64_t start_ns = gantry.now_ns;
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 1 (x): holds 6061h:0 = 0x0 where 0x8 was asked for; check the device's limits "
             "and firmware");
   EXPECT_GE(gantry.now_ns - start_ns, 500'000'000);
@@ -199,13 +193,13 @@ TEST(BringUp, ModeThatIsNeverDisplayedEndsAfterHalfASecond) {
 TEST(BringUp, SomethingElseThanADriveIsRefused) {
   GantryOnBus gantry;
   gantry.nodes[0]->keeps[0x100000] = 0x00000191;
-  EXPECT_NE(failure(gantry).find("is no CiA 402 drive"), std::string::npos);
+  EXPECT_NE(gantry.refused().find("is no CiA 402 drive"), std::string::npos);
 }
 
 TEST(BringUp, SdoWithoutAnswerIsNamed) {
   GantryOnBus gantry;
   gantry.nodes[3]->mute_at = 0x1A0102;
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 4 (force/torque sensor): no SDO answer for 1A01h:2 within 0.5 s; expected "
             "0x584; check that no other master talks to the node");
 }
@@ -213,7 +207,7 @@ TEST(BringUp, SdoWithoutAnswerIsNamed) {
 TEST(BringUp, SensorThatReportsAFaultIsRefused) {
   GantryOnBus gantry;
   gantry.nodes[3]->keeps[0x200200] = 2;
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 4 (force/torque sensor): reports status 0x0002 (2002h) where 0 is good; check "
             "the sensor");
 }
@@ -221,7 +215,7 @@ TEST(BringUp, SensorThatReportsAFaultIsRefused) {
 TEST(BringUp, NodeThatDoesNotStartIsNamed) {
   GantryOnBus gantry;
   gantry.nodes[1]->ignores_start = true;
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 2 (y): did not become operational within 1.0 s; expected 0x702#05; check the "
             "node's error register (1001h)");
 }
@@ -230,7 +224,7 @@ TEST(BringUp, NodeThatResetsDuringConfigurationIsNamed) {
   GantryOnBus gantry;
   while (gantry.nodes[2]->writes.size() < 5) EXPECT_FALSE(gantry.prepare(1));
   gantry.nodes[0]->reboot();
-  EXPECT_NE(failure(gantry).find("node 1 (x): has reset itself while running"), std::string::npos);
+  EXPECT_NE(gantry.refused().find("node 1 (x): has reset itself while running"), std::string::npos);
 }
 
 /// What a second master on the bus of a first says, which must not notice.
@@ -262,7 +256,7 @@ TEST(BringUp, AMasterWithoutSyncIsKnownByItsHeartbeat) {
   heartbeat.length = 1;
   heartbeat.data[0] = 0x05;
   (void)gantry.bus.attach().send(heartbeat);
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "another master runs on this bus: 0x77F (heartbeat of the master's node) came from it; "
             "stop it first");
 }

@@ -36,12 +36,6 @@ bool wrote(const ScriptedNode& node, std::uint32_t object) {
                      [&](const ScriptedNode::Write& write) { return write.object == object; });
 }
 
-std::string failure(GantryOnBus& gantry) {
-  EXPECT_FALSE(gantry.prepare(6000));
-  EXPECT_EQ(gantry.arm.state(), ArmState::kFault);
-  return describe(gantry.arm.fault(), gantry.robot);
-}
-
 std::vector<std::string> notes(const GantryOnBus& gantry, std::uint8_t node) {
   std::vector<std::string> lines;
   for (const SettingNote& note : gantry.arm.bring_up().notes()) {
@@ -127,7 +121,7 @@ TEST(DriveProfile, AClampedWindowIsTakenAndTold) {
 TEST(DriveProfile, AWindowThatTheDriveRefusesIsTakenUnlessItIsOff) {
   GantryOnBus gantry;
   gantry.nodes[1]->refuses[0x606500] = 0x06090031;
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(6000),
             "node 2 (y): refused 6065h:0 = 0x1388: value too high (abort 0x06090031); check the "
             "device's manual and firmware, and the profile of its drive");
 }
@@ -216,7 +210,7 @@ TEST(DriveProfile, AFixedTransmissionTypeThatIsNotOfSyncIsNamed) {
   Robot robot = gantry_robot();
   robot.joints[0].drive = drive;
   GantryOnBus gantry(robot);
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(6000),
             "node 1 (x): holds 1800h:2 = 0xFF where 0x1 was asked for; check the device's limits "
             "and firmware");
 }
@@ -259,7 +253,7 @@ TEST(DriveProfile, ABootThatTakesAsLongAsItsProfileSaysIsAwaited) {
   GantryOnBus gantry(robot);
   gantry.nodes[2]->dead = true;
   const std::int64_t start_ns = gantry.now_ns;
-  EXPECT_NE(failure(gantry).find("node 3 (z): no boot-up within 2.0 s"), std::string::npos);
+  EXPECT_NE(gantry.refused(6000).find("node 3 (z): no boot-up within 2.0 s"), std::string::npos);
   EXPECT_EQ(gantry.now_ns - start_ns, 4'300'000'000);
 }
 

@@ -1,5 +1,7 @@
 #include "tests/hw/gantry_on_bus.h"
 
+#include "hw/arm/describe_fault.h"
+
 namespace tenon::hw {
 
 Robot gantry_robot() {
@@ -50,6 +52,11 @@ bool GantryOnBus::prepare(int limit_ms) {
     bus.advance(now_ns);
   }
   return false;
+}
+
+std::string GantryOnBus::refused(int limit_ms) {
+  if (prepare(limit_ms) || arm.state() != ArmState::kFault) return "";
+  return describe(arm.fault(), robot);
 }
 
 bool GantryOnBus::cycle(ArmRequest request, const JointVector& position) {

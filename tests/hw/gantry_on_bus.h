@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "hw/arm/canopen_arm.h"
@@ -25,6 +26,8 @@ class GantryOnBus {
 
   /// Runs prepare() every millisecond until it succeeds or fails, at most `limit_ms`.
   bool prepare(int limit_ms = 10'000);
+  /// What is said of the fault in which prepare() ends; empty where it succeeds.
+  std::string refused(int limit_ms = 10'000);
   /// One control cycle of 2 ms; true where receive() said complete.
   bool cycle(ArmRequest request, const JointVector& position = {});
   /// Cycles until the state is reached; false after `limit` cycles.

@@ -14,12 +14,6 @@
 namespace tenon::hw {
 namespace {
 
-std::string failure(GantryOnBus& gantry) {
-  EXPECT_FALSE(gantry.prepare());
-  EXPECT_EQ(gantry.arm.state(), ArmState::kFault);
-  return describe(gantry.arm.fault(), gantry.robot);
-}
-
 class AbortCode : public ::testing::TestWithParam<std::tuple<std::uint32_t, const char*>> {};
 
 TEST_P(AbortCode, IsToldAsAnAbortAndNotAsAValue) {
@@ -28,10 +22,10 @@ TEST_P(AbortCode, IsToldAsAnAbortAndNotAsAValue) {
   gantry.nodes[0]->refuses[0x606000] = code;
   char hex[16];
   std::snprintf(hex, sizeof hex, "0x%08X", code);
-  EXPECT_EQ(failure(gantry), "node 1 (x): refused 6060h:0 = 0x8: " + std::string(text) +
-                                 " (abort " + hex +
-                                 "); check the device's manual and firmware, and the profile of "
-                                 "its drive");
+  EXPECT_EQ(gantry.refused(), "node 1 (x): refused 6060h:0 = 0x8: " + std::string(text) +
+                                  " (abort " + hex +
+                                  "); check the device's manual and firmware, and the profile of "
+                                  "its drive");
 }
 
 INSTANTIATE_TEST_SUITE_P(OfDevices, AbortCode,
@@ -46,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(OfDevices, AbortCode,
 TEST(MastersManners, AnAbortCodeThatIsAlsoAValueIsToldApart) {
   GantryOnBus gantry;
   gantry.nodes[0]->keeps[0x100000] = 0x06020000;  // a value like an abort code
-  EXPECT_EQ(failure(gantry),
+  EXPECT_EQ(gantry.refused(),
             "node 1 (x): is no CiA 402 drive (1000h = 0x06020000, low half must be 402); check "
             "the node id");
 }

@@ -263,6 +263,7 @@ TEST_F(ProcessesTest, TheExecutorEndsByItselfWithAReasonWhenTheArmIsGone) {
   EXPECT_EQ(processes->exec().wait(), 1);
   const nlohmann::json result = processes->result();
   EXPECT_EQ(result.at("reason"), "arm_fault");
+  EXPECT_EQ(result.at("arm_fault"), "bus_down");
   EXPECT_EQ(result.at("disable_confirmed"), false);
   const std::string message = result.at("message");
   EXPECT_NE(message.find("the CAN bus is gone"), std::string::npos) << message;

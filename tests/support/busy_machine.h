@@ -6,7 +6,8 @@
 
 namespace tenon::tests {
 
-/// Makes a run again that ended only because the machine gave the executor no time.
+/// Makes a run again that ended only because the machine gave the executor or the virtual arm no
+/// time.
 class Attempts {
  public:
   /// Whether to try once more. Waits first, longer each time, until the machine may be quieter.
