@@ -4,6 +4,7 @@ import os
 import pathlib
 import re
 import shlex
+import shutil
 import subprocess
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -48,11 +49,25 @@ class BuildTree:
                              capture_output=True, cwd=self.path, check=True)
         return run.stdout
 
-    def compiles(self, target, text):
-        """Compiles `text` as if it were a file of `target`. Returns (ok, messages)."""
-        run = subprocess.run(
-            [*self.flags_of(target), "-Wno-unused", "-fsyntax-only", "-x", "c++", "-"],
-            input=text, text=True, capture_output=True, cwd=self.path, check=False)
+    def compiles(self, target, text, keep=None):
+        """Compiles `text` as if it were a file of `target`. Returns (ok, messages).
+
+        keep: a name that is the text's own. It is then compiled from a file below the build tree, through
+        ccache where there is one, which knows it again.
+        """
+        words = [*self.flags_of(target), "-Wno-unused"]
+        if keep is None:
+            return self._run([*words, "-fsyntax-only", "-x", "c++", "-"], text)
+        source = self.path / "house" / (re.sub(r"\W", "_", keep) + ".cpp")
+        source.parent.mkdir(exist_ok=True)
+        source.write_text(text, encoding="utf-8")
+        launcher = [found] if (found := shutil.which("ccache")) else []
+        return self._run([*launcher, *words, "-O0", "-g0", "-c", str(source), "-o", str(source) + ".o"], None)
+
+    def _run(self, words, text):
+        settings = {"CCACHE_BASEDIR": str(SOURCE), "CCACHE_NOHASHDIR": "1"}
+        run = subprocess.run(words, input=text, text=True, capture_output=True, cwd=self.path, check=False,
+                             env={**os.environ, **settings})
         return run.returncode == 0, run.stderr
 
     def dependencies(self):

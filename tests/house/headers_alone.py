@@ -41,7 +41,7 @@ def main():
         target = tests if header.startswith("tests/") else tree.room_of(header)
         if tree.flags_of(target) is None:
             target = tests
-        ok, messages = tree.compiles(target, f'#include "{header}"\n')
+        ok, messages = tree.compiles(target, f'#include "{header}"\n', keep=header)
         return header, ok, messages
 
     remaining = [header for header in headers if header not in shown]
