@@ -181,8 +181,8 @@ constexpr std::array kTable = {
           {.cycles = kFrozenSamples + 2}),
     fault(EndReason::kTareDrift, "tare_drift",
           "mean wrench of later samples at rest in free air against the first's: the tare's "
-          "halves, and where a step waits",
-          {.cycles = kTareSamples + 2}, "the first sample at rest", EndManner::kHold),
+          "halves, five times, and where a step waits",
+          {.cycles = kTareTries * kTareSamples + 2}, "the first sample at rest", EndManner::kHold),
     fault(EndReason::kEncoderJump, "encoder_jump",
           "every joint's way against its commands and its full speed", kAtOnce),
 };

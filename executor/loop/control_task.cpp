@@ -229,14 +229,17 @@ ControlTask::Turn ControlTask::tare(const ArmFeedback& feedback) {
 }
 
 ControlTask::Turn ControlTask::end_tare() {
-  // A zero that moves steadily is unsteady, too: the cause is named and not its effect.
-  const auto& drift = drift_;
-  const bool steadily = drift && sensor_tare_.deviation_beside(drift->index, drift->value) <=
-                                     sensor_tare_.deviation_max(drift->index);
-  if (steadily && !parameters_.masked.masks(drift->reason, ArmFaultKind::kNone)) return *drift;
-  if (sensor_tare_.status() == SensorTare::Status::kUnsteady) {
-    // An arm that has just taken its load off the brakes swings for a while.
-    if (++unsteady_tares_ >= kTareTries) return unsteady(sensor_tare_);
+  const bool masked = parameters_.masked.masks(EndReason::kTareDrift, ArmFaultKind::kNone);
+  const bool drifts = drift_ && !masked;
+  if (drifts || sensor_tare_.status() == SensorTare::Status::kUnsteady) {
+    // An arm that has just taken its load off the brakes swings for a while, and one whose joints
+    // wind up or whose sensor warms up creeps.
+    if (++unsteady_tares_ >= kTareTries) {
+      // A zero that moves steadily is unsteady, too: the cause is named and not its effect.
+      const bool steadily = drifts && sensor_tare_.deviation_beside(drift_->index, drift_->value) <=
+                                          sensor_tare_.deviation_max(drift_->index);
+      return steadily ? *drift_ : unsteady(sensor_tare_);
+    }
     sensor_tare_.start_again();
     drift_watch_.restart();
     drift_.reset();
@@ -258,7 +261,7 @@ std::optional<Ending> ControlTask::watch_drift(const Vector6& sample) {
 
 std::optional<Ending> ControlTask::wait_in_free_air() {
   if (!supervision_.wrench_usable()) return std::nullopt;
-  const std::optional<Ending> drift = watch_drift(supervision_.wrench());
+  const std::optional<Ending> drift = watch_drift(supervision_.contact_at_sensor());
   return drift_watch_.began_at_zero() ? drift : std::nullopt;
 }
 

@@ -55,6 +55,8 @@ class Supervision {
   [[nodiscard]] const Pose& tool() const { return tool_; }
   /// External wrench, task axes at the tool tip; of the last good sample.
   [[nodiscard]] const Vector6& wrench() const { return wrench_.external(); }
+  /// The same in the sensor's axes about its origin, where its noise is what the data sheet says.
+  [[nodiscard]] const Vector6& contact_at_sensor() const { return wrench_.contact(); }
   /// At which an arm may stop its drives by itself.
   [[nodiscard]] ForceLimit force_limit() const;
   /// It is a fresh sample, and guarded moves may see it.

@@ -42,6 +42,7 @@ Vector3 WrenchEstimator::com_acceleration_mps2(const Vector3& to_com_T) const {
 void WrenchEstimator::tare(const Vector6& mean_raw, const Pose& X_TP) {
   bias_ = mean_raw - payload_wrench(R_TS(X_TP).conjugate() * gravity_T_mps2_);
   unloaded_ = mean_raw;
+  contact_.setZero();
   external_.setZero();
 }
 
@@ -58,11 +59,11 @@ WrenchEstimator::Status WrenchEstimator::update(const Vector6& raw, const Pose& 
   const Vector3 to_com_T = rotation * (com_S_m_ - X_SP_.position_m);
   const Vector3 com_mps2 = com_acceleration_mps2(to_com_T);
   unloaded_ = bias_ + payload_wrench(rotation.conjugate() * (gravity_T_mps2_ - com_mps2));
-  const Vector6 contact = raw - unloaded_;
+  contact_ = raw - unloaded_;
 
   // The same wrench about the tool tip instead of the sensor's origin.
-  const Vector3 force_N = contact.head<3>();
-  const Vector3 torque_Nm = contact.tail<3>() - X_SP_.position_m.cross(force_N);
+  const Vector3 force_N = contact_.head<3>();
+  const Vector3 torque_Nm = contact_.tail<3>() - X_SP_.position_m.cross(force_N);
   external_ << rotation * force_N, rotation * torque_Nm;
   return Status::kGood;
 }

@@ -43,6 +43,8 @@ class WrenchEstimator {
   [[nodiscard]] Vector3 unloaded_N() const { return unloaded_.head<3>(); }
   /// Of the last good sample: what the environment does to the tool, N and Nm.
   [[nodiscard]] const Vector6& external() const { return external_; }
+  /// The same as the sensor reads it: its axes, about its origin.
+  [[nodiscard]] const Vector6& contact() const { return contact_; }
   /// The axis that saturated.
   [[nodiscard]] int axis() const { return axis_; }
 
@@ -62,6 +64,7 @@ class WrenchEstimator {
   PayloadMotion motion_;
   Vector6 bias_ = Vector6::Zero();
   Vector6 unloaded_ = Vector6::Zero();
+  Vector6 contact_ = Vector6::Zero();
   Vector6 external_ = Vector6::Zero();
   int axis_ = 0;
 };

@@ -38,6 +38,7 @@ ArmSupervision::ArmSupervision(const Robot& robot, std::span<const JointChannel>
 void ArmSupervision::reset() noexcept {
   state_ = ArmState::kUnconfigured;
   fault_ = {};
+  cause_guessed_ = false;
   force_stopped_N_ = 0.0;
   stop_due_ = false;
 }
@@ -73,6 +74,8 @@ void ArmSupervision::raise(const ArmFault& fault) noexcept {
 void ArmSupervision::raise_of_drive(ArmFaultKind kind, std::size_t joint) noexcept {
   const JointChannel& channel = joints_[joint];
   if (kind == ArmFaultKind::kDriveFault && warned_[joint] != 0) {
+    // Most likely what it had warned of; its next EMCY knows.
+    cause_guessed_ = cause_guessed_ || state_ != ArmState::kFault;
     return raise({kind, channel.node(), object_of(tenon::canopen::kErrorCode), warned_[joint]});
   }
   raise({kind, channel.node(), object_of(tenon::canopen::kStatusword), channel.statusword()});
@@ -135,10 +138,11 @@ void ArmSupervision::take_emergency(const canopen::Emergency& emergency) noexcep
   }
   const auto joint = static_cast<std::size_t>(ours - joints_.begin());
   // The statusword may have told first; the error code says more.
-  const bool same_fault = fault_.kind == ArmFaultKind::kDriveFault &&
-                          fault_.node == emergency.node &&
-                          fault_.object == object_of(tenon::canopen::kStatusword);
+  const bool same_fault =
+      fault_.kind == ArmFaultKind::kDriveFault && fault_.node == emergency.node &&
+      (fault_.object == object_of(tenon::canopen::kStatusword) || cause_guessed_);
   if (same_fault) {
+    cause_guessed_ = false;
     fault_.object = error_code;
     fault_.code = emergency.code;
   } else if (drives_[joint].warns(emergency.code)) {

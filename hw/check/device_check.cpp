@@ -2,8 +2,10 @@
 
 #include <optional>
 
+#include "hw/arm/describe_fault.h"
 #include "hw/arm/drive_settings.h"
 #include "hw/arm/node_settings.h"
+#include "hw/arm/setting_runner.h"
 #include "hw/bus_load/bus_load.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
@@ -48,6 +50,12 @@ class Model {
       comparing_ = false;
       return line;
     }
+    if (setting.action == Action::kTry && gave_up_) {
+      line.device = "not asked any more";
+      line.verdict = Verdict::kOther;
+      comparing_ = false;
+      return line;
+    }
     const DeviceObject* object = file_.find(setting.index, setting.sub);
     if (object == nullptr) {
       missing(line);
@@ -69,14 +77,20 @@ class Model {
     if (line.setting.action == Action::kCompare) {
       remember(line.setting.optional);
     } else if (line.setting.action == Action::kTry) {
-      line.verdict = Verdict::kOther;
-      line.device += ", brought up without";
+      give_up(line);
     } else if (line.setting.optional) {
       line.device += ", which its profile allows";
     } else {
       line.verdict = Verdict::kRefused;
       line.device += index ? " (abort 0x06090011)" : " (abort 0x06020000)";
     }
+  }
+
+  /// As bring-up does: it spares the node all others of these.
+  void give_up(CheckLine& line) {
+    gave_up_ = true;
+    line.verdict = Verdict::kOther;
+    line.device += ", brought up without";
   }
 
   void compare(CheckLine& line, const DeviceObject& object) {
@@ -95,8 +109,7 @@ class Model {
     line.device += ": " + refusal;
     line.verdict = Verdict::kRefused;
     if (line.setting.action == Action::kTry) {
-      line.verdict = Verdict::kOther;
-      line.device += ", brought up without";
+      give_up(line);
       return;
     }
     if (line.setting.action != Action::kWriteOrTake) return;
@@ -176,6 +189,7 @@ class Model {
   std::map<std::uint32_t, std::uint32_t> values_;  ///< that have been written
   bool same_ = false;
   bool comparing_ = false;
+  bool gave_up_ = false;
 };
 
 std::string action_text(const ObjectSetting& setting) {
@@ -217,19 +231,27 @@ const char* verdict_text(Verdict verdict) {
   return "";
 }
 
-int append_joint(const Robot& robot, std::size_t joint, const DeviceFile* file, std::string& text) {
+struct JointVerdict {
+  int refused = 0;
+  bool stops_at_once = true;  ///< by the one frame for all drives
+};
+
+JointVerdict append_joint(const Robot& robot, std::size_t joint, const DeviceFile* file,
+                          std::string& text) {
   const Joint& it = robot.joints[joint];
   text +=
       format("node %u (%s), drive %s, %s\n", static_cast<unsigned>(it.node), it.name.c_str(),
              it.drive.name.c_str(), file == nullptr ? "no description file" : file->name.c_str());
-  int refused = 0;
+  JointVerdict verdict{0, takes_stop(it.drive)};
   for (const CheckLine& line : check_joint(robot, joint, file)) {
-    refused += line.verdict == Verdict::kRefused ? 1 : 0;
+    verdict.refused += line.verdict == Verdict::kRefused ? 1 : 0;
+    const bool gives_up = line.setting.action == Action::kTry && line.verdict == Verdict::kOther;
+    if (gives_up) verdict.stops_at_once = false;
     text += format("  %04Xh:%u  %-26s %-8s %s\n", static_cast<unsigned>(line.setting.index),
                    static_cast<unsigned>(line.setting.sub), action_text(line.setting).c_str(),
                    verdict_text(line.verdict), line.device.c_str());
   }
-  return refused;
+  return verdict;
 }
 
 }  // namespace
@@ -252,16 +274,22 @@ CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, Device
   CheckReport report;
   int refused = 0;
   std::size_t unknown = 0;
+  std::string remarks;
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const auto file = files.find(robot.joints[i].node);
     unknown += file == files.end() ? 1 : 0;
-    refused += append_joint(robot, i, file == files.end() ? nullptr : &file->second, report.text);
+    const DeviceFile* described = file == files.end() ? nullptr : &file->second;
+    const JointVerdict joint = append_joint(robot, i, described, report.text);
+    refused += joint.refused;
+    const SettingNote no_stop{SettingNote::Kind::kNoStop, robot.joints[i].node};
+    if (!joint.stops_at_once) remarks += describe(no_stop, robot) + "\n";
   }
   const BusLoad load = bus_load(robot);
   report.text += format("bus: %u frames every %u us, %.1f %% of %u bit/s (%.1f %% at worst)\n",
                         load.frames_per_cycle, robot.cycle_us, 100.0 * load.nominal,
                         robot.bitrate_bps, 100.0 * load.worst);
   for (const std::string& remark : drive_remarks(robot)) report.text += remark + "\n";
+  report.text += remarks;
   try {
     check_bus_load(robot);
   } catch (const InputError& error) {

@@ -90,6 +90,36 @@ TEST(DeviceCheck, AFixedMappingThatIsTheOneWantedIsLeftAlone) {
   EXPECT_FALSE(check_report(it, for_all(it, file)).good);
 }
 
+// The RPDO by which all drives are stopped at once: a device that refuses it comes up without, is
+// asked for no more of it, and is named.
+TEST(DeviceCheck, ADriveWithoutARpdoForTheStopIsNamedAndSparedTheRest) {
+  const Robot it = robot("epos4");
+  const DeviceFile file = twin("epos4");
+  std::vector<CheckLine> tried = check_joint(it, 0, &file);
+  std::erase_if(tried, [](const CheckLine& line) {
+    return line.setting.action != canopen::ObjectSetting::Action::kTry;
+  });
+  ASSERT_GT(tried.size(), 2U);
+  EXPECT_EQ(tried.front().device, "has no such object, brought up without");
+  for (std::size_t i = 1; i < tried.size(); ++i) {
+    EXPECT_EQ(tried[i].device, "not asked any more") << i;
+    EXPECT_EQ(tried[i].verdict, CheckLine::Verdict::kOther) << i;
+  }
+  const CheckReport report = check_report(it, for_all(it, file));
+  EXPECT_TRUE(report.good);
+  EXPECT_NE(report.text.find("node 1 (x): has no free RPDO"), std::string::npos) << report.text;
+}
+
+// Known from the profile alone.
+TEST(DeviceCheck, ADriveWhosePdosAreFixedIsNamedWithoutAFile) {
+  Robot it = robot("epos4");
+  EXPECT_EQ(check_report(it, {}).text.find("has no free RPDO"), std::string::npos);
+  it.joints[1].drive.fixed_mapping = true;
+  const std::string text = check_report(it, {}).text;
+  EXPECT_NE(text.find("node 2 (y): has no free RPDO"), std::string::npos) << text;
+  EXPECT_EQ(text.find("has no free RPDO"), text.rfind("has no free RPDO")) << text;
+}
+
 TEST(DeviceCheck, WithoutAFileItSaysWhatItWouldDo) {
   const CheckReport report = check_report(robot("csp6"), {});
   EXPECT_TRUE(report.good);

@@ -277,6 +277,26 @@ TEST(DriveProfile, TheFaultThatAWarningBecomesHasItsCode) {
             "node 3 (z): drive fault 0x4210 (device too hot); see the drive's manual for the code");
 }
 
+// A drive that has long been warm loses its encoder: the statusword tells of a fault, and only the
+// next emergency of which.
+TEST(DriveProfile, AFaultBesideAStandingWarningHasItsOwnCode) {
+  GantryOnBus gantry;
+  ASSERT_TRUE(gantry.prepare_and_enable());
+  gantry.nodes[2]->send(0x083, {0x10, 0x42, 0x08, 0, 0, 0, 0, 0});
+  gantry.cycle(ArmRequest::kEnabled, gantry.feedback.position);
+  gantry.nodes[2]->statusword = 0x0218;
+  gantry.cycle(ArmRequest::kEnabled, gantry.feedback.position);
+  ASSERT_EQ(gantry.arm.fault().code, 0x4210U);
+  gantry.nodes[2]->send(0x083, {0x05, 0x73, 0x20, 0, 0, 0, 0, 0});
+  gantry.cycle(ArmRequest::kEnabled, gantry.feedback.position);
+  EXPECT_EQ(gantry.arm.fault().node, 3);
+  EXPECT_EQ(gantry.arm.fault().code, 0x7305U);
+  // What follows from it changes nothing.
+  gantry.nodes[2]->send(0x083, {0x11, 0x86, 0x20, 0, 0, 0, 0, 0});
+  gantry.cycle(ArmRequest::kEnabled, gantry.feedback.position);
+  EXPECT_EQ(gantry.arm.fault().code, 0x7305U);
+}
+
 TEST(DriveProfile, ACodeThatItsProfileDoesNotListStops) {
   Robot robot = gantry_robot();
   robot.joints[2].drive.warnings = {{0xFF00, 0xFFFF}};
