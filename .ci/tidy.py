@@ -6,7 +6,8 @@
 Changed means: neither this text (but for its include lines, so that moving a file changes nothing) stood
 anywhere in the commit that .ci/linted names, nor has this file passed before on this machine. For a changed
 header one source that includes it is checked, the one of its own name if there is one. --all checks every
-source, and with the static analyzer too, which takes four fifths of the time; what has passed before on this machine is remembered all the same, by a hash over the preprocessed
+source, and the product's with the static analyzer too, which takes four fifths of the time (tests are run, under
+sanitizers too). What has passed before on this machine is remembered all the same, by a hash over the preprocessed
 text, comments included, and over the configuration, in the user's cache folder: it outlives a clone.
 
 A finding in a header is shown once, however many files include it. Exit status 1 when there are findings.
@@ -208,11 +209,16 @@ def main():
     work = ours if linted is None else changed(ours, linted)
     database = write_database(build, work)
     stamps = memory()
-    without = [] if arguments.all else ["--checks=-clang-analyzer-*"]
+
+    def without(path):
+        analysed = arguments.all and SOURCE / "tests" not in path.parents
+        return [] if analysed else ["--checks=-clang-analyzer-*"]
+
     shown = set()
     checked = 0
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        futures = [pool.submit(check, path, entry, database, stamps, without) for path, entry in work.items()]
+        futures = [pool.submit(check, path, entry, database, stamps, without(path))
+                   for path, entry in work.items()]
         for future in concurrent.futures.as_completed(futures):
             path, output, seconds = future.result()
             checked += seconds > 0
