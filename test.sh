@@ -6,7 +6,8 @@
 #   ./test.sh full             what a release needs: also every start of every task and variant, the long
 #                              studies, clang-tidy and its analyzer on every file, changed or not
 #   ./test.sh [full] STAGE...  only these stages, of: format lint unit guest asan tsan
-#                              and on demand: fuzz
+#                              and on demand: fuzz (full: a million runs of every binary decoder, 200,000 of
+#                              every text loader; hours)
 #
 # A run of all stages that passed leaves the hash of the tree that it passed on in build/tested: who asks
 # whether a commit was tested compares it with `git rev-parse COMMIT^{tree}`.
@@ -152,8 +153,11 @@ stage_tsan() {
 
 stage_fuzz() {
   .ci/setup.sh fuzz
+  local runs=short
+  [[ $tier == full ]] && runs=long
+  cmake --preset fuzz -DTENON_FUZZ_RUNS=$runs >/dev/null
   build fuzz
-  ctest --preset fuzz --parallel "$jobs"
+  ctest --preset fuzz --parallel "$jobs" --verbose | grep -E 'Done [0-9]+ runs|Passed|\*\*\*|tests passed|ERROR'
 }
 
 # --- run ---------------------------------------------------------------------------------------------

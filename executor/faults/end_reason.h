@@ -41,8 +41,9 @@ enum class EndReason : std::uint8_t {
   kWrenchFrozen = 30,    ///< value: equal samples in a row, their counter running
   kTareDrift = 31,       ///< index: wrench axis; value: what its mean moved by at rest, bound
   kEncoderJump = 32,     ///< index: joint; value: m or rad since its last answer, bound
+  kZeroMoved = 33,       ///< index: wrench axis; value: mean at the end, nothing touching, bound
 };
-inline constexpr EndReason kLastEndReason = EndReason::kEncoderJump;
+inline constexpr EndReason kLastEndReason = EndReason::kZeroMoved;
 [[nodiscard]] const char* to_string(EndReason reason);
 
 /// How the motion comes to rest.

@@ -185,6 +185,10 @@ constexpr std::array kTable = {
           {.cycles = kTareTries * kTareSamples + 2}, "the first sample at rest", EndManner::kHold),
     fault(EndReason::kEncoderJump, "encoder_jump",
           "every joint's way against its commands and its full speed", kAtOnce),
+    fault(EndReason::kZeroMoved, "zero_moved",
+          "wrench at the plan's end, where no contact is held: two means of 0.2 s against half "
+          "the off-thresholds",
+          {.cycles = 2, .time_s = kZeroWatch_s}, "the plan's end", EndManner::kHold),
 };
 
 constexpr bool every_reason_has_a_row() {

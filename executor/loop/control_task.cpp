@@ -123,14 +123,16 @@ ControlTask::Turn ControlTask::enter_state(State state) {
   return on_enter(state);
 }
 
-// A fault takes precedence over an orderly end, else the first stays.
+// A fault takes precedence over an orderly end, and what the end reveals over that the plan is
+// done; else the first stays.
 Event ControlTask::remember(const Ending& ending) {
   on_ending(ending);
   const bool fault = end_manner(ending.reason) == EndManner::kQuickStop;
   const bool first = ending_.reason == EndReason::kNone;
   const bool worse = fault && end_manner(ending_.reason) != EndManner::kQuickStop &&
                      (state_ < State::kDisabling || ending.reason == EndReason::kBrakeFailed);
-  if (first || worse) {
+  const bool revealed = ending.reason == EndReason::kZeroMoved;
+  if (first || worse || revealed) {
     const bool disable_confirmed = ending_.disable_confirmed;
     ending_ = ending;
     ending_.disable_confirmed = disable_confirmed;
@@ -191,8 +193,7 @@ ControlTask::Turn ControlTask::act(const ArmFeedback& feedback) {
     case State::kQuickStopping:
       return wait_for_rest(feedback);
     case State::kHolding:
-      if (time_in_state_s() >= parameters_.hold_s) return Event::kHeld;
-      return {};
+      return hold();
     case State::kDisabling:
       return wait_for_disabled(feedback);
     case State::kWatching:
@@ -203,6 +204,10 @@ ControlTask::Turn ControlTask::act(const ArmFeedback& feedback) {
       return {};
   }
   return {};
+}
+
+ControlTask::Turn ControlTask::held() const {
+  return time_in_state_s() >= parameters_.hold_s ? Turn(Event::kHeld) : Turn();
 }
 
 ControlTask::Turn ControlTask::wait_for_drives(const ArmFeedback& feedback) const {

@@ -101,6 +101,8 @@ class ControlTask {
   [[nodiscard]] virtual Turn approach() = 0;
   [[nodiscard]] virtual Turn run(const ArmFeedback& feedback) = 0;
   [[nodiscard]] virtual Turn ramp_down() = 0;
+  /// One cycle of kHolding.
+  [[nodiscard]] virtual Turn hold() { return held(); }
   /// The run ends for this reason, in the state that it is still in.
   virtual void on_ending(const Ending& /*ending*/) {}
   /// Commands the joints of this cycle, from kApproaching to kHolding.
@@ -112,6 +114,8 @@ class ControlTask {
   /// Fills in what the common part of a record does not tell.
   virtual void write_motion(CycleRecord& record) = 0;
 
+  /// Has it held for long enough?
+  [[nodiscard]] Turn held() const;
   /// The tool waits in free air. @return that the wrench moves all the same
   [[nodiscard]] std::optional<Ending> wait_in_free_air();
   /// It does so no more.

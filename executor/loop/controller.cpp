@@ -1,11 +1,35 @@
 #include "executor/loop/controller.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "executor/faults/fault_bounds.h"
 #include "executor/motion/joint_difference.h"
 
 namespace tenon::executor {
+namespace {
+
+// Half of what holds a contact: a zero that is off by less, the thresholds have room for. And
+// nothing that noise may make.
+ZeroWatch::Parameters zero_parameters(const Plan& plan, const Cell& cell, double window_s) {
+  constexpr int kSamplesLeast = 20;
+  ZeroWatch::Parameters p;
+  p.samples = std::max(kSamplesLeast, static_cast<int>(1e6 * window_s / cell.robot.cycle_us));
+  p.axes = plan.compliance.compliant_axes;
+  const auto noise = SensorTare::parameters_for(cell.robot.sensor, kTareSamples);
+  const double lever_m = compose(inverse(cell.X_FS), cell.X_FP).position_m.norm();
+  const double share = DriftWatch::kDeviations * std::sqrt(1.0 / p.samples + 1.0 / kTareSamples);
+  const ContactThresholds& t = plan.parameter_sets[plan.steps.back().parameter_set].thresholds;
+  const double force_N = std::max(0.5 * t.force_off_N, share * noise.force_deviation_max_N);
+  const double torque_Nm =
+      std::max(0.5 * t.torque_off_Nm,
+               share * (noise.torque_deviation_max_Nm + lever_m * noise.force_deviation_max_N));
+  p.bound << Vector3::Constant(force_N), Vector3::Constant(torque_Nm);
+  return p;
+}
+
+}  // namespace
+
 Controller::Controller(const Cell& cell, const DryRun& dry_run, const Parameters& parameters)
     : ControlTask(cell, parameters),
       plan_(with_steps(dry_run.plan)),
@@ -13,7 +37,8 @@ Controller::Controller(const Cell& cell, const DryRun& dry_run, const Parameters
       done_reach_(done_reach(plan_)),
       parameters_(parameters),
       tool_(plan_.compliance),
-      runner_(plan_) {}
+      runner_(plan_),
+      zero_watch_(zero_parameters(plan_, ControlTask::cell(), parameters.hold_s)) {}
 
 // --- states ---------------------------------------------------------------------------------
 
@@ -173,6 +198,27 @@ ControlTask::Turn Controller::ramp_down() {
   const double time_s = time_in_state_s() + cycle_s();
   setpoint_ = stop_.at(time_s);
   return time_s >= stop_.duration_s() ? Turn(Event::kAtRest) : Turn();
+}
+
+// A plan that ends in free air is done only if it is free air: a zero that has moved meanwhile has
+// shifted whatever was met on the way. In a contact nobody can tell.
+ControlTask::Turn Controller::hold() {
+  const bool free = ending().reason == EndReason::kPlanDone && runner_.signature().bits == 0;
+  if (!free || zero_told_ || time_in_state_s() >= kZeroWatch_s) return held();
+  if (supervision().wrench_usable()) (void)zero_watch_.add(supervision().wrench());
+  switch (zero_watch_.status()) {
+    case ZeroWatch::Status::kLooking:
+      return {};
+    case ZeroWatch::Status::kZero:
+      return held();
+    case ZeroWatch::Status::kMoved:
+      zero_told_ = true;
+      return Ending{.reason = EndReason::kZeroMoved,
+                    .index = zero_watch_.axis(),
+                    .value = zero_watch_.mean(),
+                    .bound = zero_watch_.bound()};
+  }
+  return {};
 }
 
 // --- giving out -----------------------------------------------------------------------------

@@ -17,6 +17,7 @@
 #include "executor/motion/joint_move.h"
 #include "executor/motion/plan_runner.h"
 #include "executor/motion/stop_profile.h"
+#include "executor/sensing/zero_watch.h"
 #include "shared/cell/cell.h"
 #include "shared/plan/plan.h"
 
@@ -52,6 +53,7 @@ class Controller : public ControlTask {
   [[nodiscard]] Turn approach() override;
   [[nodiscard]] Turn run(const ArmFeedback& feedback) override;
   [[nodiscard]] Turn ramp_down() override;
+  [[nodiscard]] Turn hold() override;
   void on_ending(const Ending& ending) override;
   [[nodiscard]] std::optional<Ending> command_joints() override;
   [[nodiscard]] Vector6 complete_motion() override;
@@ -87,6 +89,8 @@ class Controller : public ControlTask {
   std::optional<Pose> seen_;  ///< by the guarded move in this cycle
   JointMove approach_;
   StopProfile stop_;
+  ZeroWatch zero_watch_;  ///< at the plan's end
+  bool zero_told_ = false;
   bool tool_left_ = false;  ///< the joints ramp down or hold by themselves
   Pose commanded_;          ///< tool pose behind the commanded joints
 };

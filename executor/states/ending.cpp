@@ -125,6 +125,14 @@ std::string tare_drift(const Ending& e) {
       axis_name(e.index), e.value, wrench_unit(e.index), e.bound);
 }
 
+std::string zero_moved(const Ending& e) {
+  return format(
+      "the plan came to its end, but the wrench there, where nothing is held, is %.3g %s about "
+      "or along %s, at most %.3g: the sensor's zero has moved since the tare and with it what the "
+      "plan has met, or something pushes; look where the part is",
+      e.value, wrench_unit(e.index), axis_name(e.index), e.bound);
+}
+
 std::string encoder_jump(const Ending& e, const Joint& joint) {
   return format(
       "node %d (%s) answers that it moved by %.3g %s at once, at most %.3g by its commands and "
@@ -156,6 +164,11 @@ std::string arm_fault(const ArmFault& fault, const std::string& text) {
                 static_cast<unsigned>(fault.code));
 }
 
+std::string arm_not_enabled(const Ending& e) {
+  return format("the arm left the enabled state unasked: %s",
+                to_string(static_cast<ArmState>(e.index)));
+}
+
 std::string nothing_met(const Ending& e) {
   return format("nothing was met within %g m along %c%s", std::abs(e.value),
                 e.value < 0.0 ? '-' : '+', axis_name(e.index));
@@ -165,6 +178,7 @@ std::string of_the_sensor(const Ending& e) {
   if (e.reason == EndReason::kTareUnsteady) return tare_unsteady(e);
   if (e.reason == EndReason::kTareOffset) return tare_offset(e);
   if (e.reason == EndReason::kTareDrift) return tare_drift(e);
+  if (e.reason == EndReason::kZeroMoved) return zero_moved(e);
   if (e.reason == EndReason::kSensorSaturated) return sensor_saturated(e);
   if (e.reason == EndReason::kWrenchFrozen) return wrench_frozen(e);
   if (e.reason == EndReason::kSensorNotFinite) return "the sensor's reading is not a number";
@@ -230,8 +244,7 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kArmFault:
       return arm_fault(e.arm_fault, arm_fault_text);
     case EndReason::kArmNotEnabled:
-      return format("the arm left the enabled state unasked: %s",
-                    to_string(static_cast<ArmState>(e.index)));
+      return arm_not_enabled(e);
     case EndReason::kEnableTimeout:
       return format("the arm was not enabled within %.3g s", e.value);
     case EndReason::kBlind:
@@ -247,6 +260,7 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kTareUnsteady:
     case EndReason::kTareOffset:
     case EndReason::kTareDrift:
+    case EndReason::kZeroMoved:
     case EndReason::kSensorSaturated:
     case EndReason::kSensorNotFinite:
     case EndReason::kWrenchFrozen:

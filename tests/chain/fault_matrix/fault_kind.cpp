@@ -23,8 +23,9 @@ Names stays_behind() {
 /// A zero that drifts is named for it while it is found; later for what the plan makes of a force
 /// that is none.
 Names drifts() {
-  return {fault_row(EndReason::kTareDrift), fault_row(EndReason::kPlanFailed),
-          fault_row(EndReason::kForceFault), fault_row(EndReason::kTorqueFault)};
+  return {fault_row(EndReason::kTareDrift), fault_row(EndReason::kZeroMoved),
+          fault_row(EndReason::kPlanFailed), fault_row(EndReason::kForceFault),
+          fault_row(EndReason::kTorqueFault)};
 }
 
 /// As tenon-sim --fault brings it about.

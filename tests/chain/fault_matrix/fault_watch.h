@@ -90,6 +90,10 @@ class FaultWatch final : public executor::CycleSink {
   [[nodiscard]] double fastest() const { return fastest_; }
   [[nodiscard]] bool has_struck() const { return struck_.has_value(); }
   [[nodiscard]] std::int64_t cycles() const { return cycles_; }
+  /// Cycles for which the fault may have acted while the drives were on.
+  [[nodiscard]] std::int64_t since_struck() const {
+    return struck_ ? off_.value_or(cycles_) - *struck_ : 0;
+  }
 
  private:
   void look_at_the_truth() {

@@ -16,6 +16,7 @@
 #include <map>
 #include <string>
 
+#include "executor/faults/fault_bounds.h"
 #include "shared/base/random.h"
 #include "shared/base/text.h"
 #include "shared/base/wilson.h"
@@ -32,12 +33,13 @@ using sim::FaultPhase;
 struct Scaled {
   const char* spec;  ///< the magnitude follows
   double threshold;  ///< that a detector, or the plan's tolerance, lets pass
-  enum class Forges { kNothing, kPosition, kForce } forges = Forges::kNothing;
+  enum class Forges { kNothing, kPosition, kForce, kDrift } forges = Forges::kNothing;
 };
 
 // Thresholds: five cycles without an answer or a wrench; the feedback's deadline; one cycle in a
 // hundred without all answers; 20 ms of a following error; the cell's force; (by the robot) a
-// joint's full speed for a cycle; the heartbeat's timeout; six samples that are the same.
+// joint's full speed for a cycle; (likewise) what a tare shows of a drift; the heartbeat's timeout;
+// six samples that are the same.
 constexpr Scaled kScaled[] = {
     {"drop:node=JOINT,id=answers,duration_s=", 0.010},
     {"drop:node=SENSOR,id=answers,duration_s=", 0.010},
@@ -48,6 +50,7 @@ constexpr Scaled kScaled[] = {
     {"frozen-drive:node=JOINT,duration_s=", 0.020},
     {"forged-force:duration_s=0.02,force_N=", 60.0, Scaled::Forges::kForce},
     {"encoder-jump:node=JOINT,jump_m=", 0.0, Scaled::Forges::kPosition},
+    {"drifting-force:duration_s=100,rate_Nps=", 0.0, Scaled::Forges::kDrift},
     {"drop:node=127,id=heartbeat,duration_s=", 0.3},
     {"drop:node=JOINT,id=heartbeat,duration_s=", 0.3},
     {"drop:node=JOINT,id=rpdo,duration_s=", 0.020},
@@ -62,6 +65,14 @@ struct Tally {
   std::map<std::string, int> names;
 };
 
+/// The rate that the halves of a tare show: six deviations of their difference, at three times the
+/// sensor's noise.
+double drift_Nps(const Robot& robot) {
+  const double half = 0.5 * executor::kTareSamples;
+  const double moved_N = 6.0 * 3.0 * robot.sensor.force_noise_N * std::sqrt(2.0 / half);
+  return moved_N / (1e-6 * robot.cycle_us * half);
+}
+
 /// @param number of the run: all that is drawn follows from it
 void run_drawn(const Ground& ground, std::uint64_t number, Tally& tally) {
   Random random(stream_seed(number, "random_fault"));
@@ -73,8 +84,9 @@ void run_drawn(const Ground& ground, std::uint64_t number, Tally& tally) {
   // What a jump at a joint moves a tool by that is no further than a metre from its axis.
   const Robot& robot = ground.cell.robot;
   const bool jumps = scaled.forges == Scaled::Forges::kPosition;
-  const double threshold =
-      jumps ? 1e-6 * robot.cycle_us * robot.joints.front().speed_max : scaled.threshold;
+  double threshold = scaled.threshold;
+  if (jumps) threshold = 1e-6 * robot.cycle_us * robot.joints.front().speed_max;
+  if (scaled.forges == Scaled::Forges::kDrift) threshold = drift_Nps(robot);
   const double magnitude = threshold * std::pow(10.0, 2.0 * random.uniform() - 1.0);
   FaultKind kind;
   kind.spec = scaled.spec + format("%g", magnitude);
@@ -101,7 +113,10 @@ void run_drawn(const Ground& ground, std::uint64_t number, Tally& tally) {
   // A force that is forged pushes the compliant tool by it over its stiffness.
   const double soft_Npm = ground.planned.plan.compliance.stiffness_Npm;
   double forged_m = misread_m;
+  const double acted_s = 1e-6 * robot.cycle_us * static_cast<double>(run.watch().since_struck());
   if (scaled.forges == Scaled::Forges::kForce) forged_m = magnitude / soft_Npm;
+  if (scaled.forges == Scaled::Forges::kDrift) forged_m = magnitude * acted_s / soft_Npm;
+  if (magnitude > threshold) forged_m = 0.0;
   const bool right = result.truth.error_norm_m <= task.goal_tolerance_m + forged_m;
   right ? ++tally.done : ++tally.wrong;
   EXPECT_TRUE(right) << what
@@ -167,7 +182,7 @@ void soak(std::chrono::seconds duration) {
   EXPECT_EQ(static_cast<std::uint64_t>(tally.done + tally.stopped), number);
 }
 
-TEST(Soak, RunsBackToBackLeaveNothingBehind) { soak(std::chrono::seconds(20)); }
+TEST(Soak, RunsBackToBackLeaveNothingBehind) { soak(std::chrono::seconds(60)); }
 
 TEST(ManyRandomFaults, TenMinutesOfRunsBackToBackLeaveNothingBehind) {
   soak(std::chrono::minutes(10));
