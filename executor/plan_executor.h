@@ -5,7 +5,7 @@
 //   while (executor.update(input, output) == PlanExecutor::Result::kRunning) { ... }
 //
 // It walks the plan's guarded moves, ends each by what is measured, goes on by its outcome, and
-// applies the plan's compliance law. It is the core that tenon-exec runs (motion/plan_runner.h,
+// applies the plan's admittance law. It is the core that tenon-exec runs (motion/plan_runner.h,
 // motion/compliant_tool.h), without what makes an arm of it: it knows neither joints nor cell, so
 // bounds on force, speed and reach, the taring and the payload of the sensor, the way to the start
 // and every stop are the caller's. For a whole arm behind the arm port take loop/controller.h; to

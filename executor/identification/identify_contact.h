@@ -5,7 +5,7 @@
 // where a dead time and a first-order lag delay a ramp alike. For each delay the rest is linear
 // least squares; the delay with the least residual is found by golden section. A contact with
 // damping of its own answers early, by damping over stiffness: the delay is that of arm and contact
-// together, as the compliance law meets it. Set-up code; allocates.
+// together, as the admittance law meets it. Set-up code; allocates.
 
 #include <cstdint>
 #include <string>

@@ -63,8 +63,8 @@ struct CycleRecord {
   std::uint16_t signature = 0;
   PoseData pose;                     ///< measured tool in task frame, as the move saw it
   std::array<double, 6> wrench{};    ///< external, task axes at the tool, N and Nm
-  PoseData setpoint;                 ///< of the compliance law
-  PoseData commanded;                ///< what the compliance law made of it
+  PoseData setpoint;                 ///< of the admittance law
+  PoseData commanded;                ///< what the admittance law made of it
   std::array<double, 6> velocity{};  ///< commanded, m/s and rad/s
 
   std::array<double, 6> wrench_raw{};  ///< sensor axes

@@ -1,5 +1,5 @@
 #pragma once
-// The compliance law:
+// The admittance law:
 //   M (x'' - xs'') + D (x' - xs') + K (x - xs) = f
 // on the compliant axes; the others follow the setpoint rigidly. Backward Euler at velocity level,
 // so it is stable for every M >= 0, D >= 0, K >= 0 and step. It knows nothing of joints or

@@ -1,5 +1,5 @@
 #pragma once
-// Where the compliance law is to bring the tool.
+// Where the admittance law is to bring the tool.
 
 #include "shared/math/pose.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a stiff contact asks of the compliance law and of the speed of a touch. A force is measured,
+// What a stiff contact asks of the admittance law and of the speed of a touch. A force is measured,
 // travels to the executor, becomes a setpoint and then motion; for all that time the arm drives on.
 
 #include "shared/cell/cell.h"
