@@ -14,7 +14,7 @@
 # ---------------------------------------------------------------------------------------------
 # Who may use whom. One row per target: everything that it may link, and therefore include.
 # ---------------------------------------------------------------------------------------------
-set(TENON_LIBRARIES shared shared_system shared_drawing shared_eds shared_config lcmtypes
+set(TENON_LIBRARIES shared shared_canopen shared_system shared_drawing shared_eds shared_config lcmtypes
     planner planner_belief planner_search planner_judge planner_report
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
@@ -22,10 +22,11 @@ set(TENON_LIBRARIES shared shared_system shared_drawing shared_eds shared_config
     sim_physics sim_cell sim_evaluation sim_evaluation_chain)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
+set(TENON_MAY_USE_shared_canopen shared)
 set(TENON_MAY_USE_shared_system shared Threads::Threads)
 set(TENON_MAY_USE_shared_drawing shared)
 set(TENON_MAY_USE_shared_eds    shared)
-set(TENON_MAY_USE_shared_config shared shared_system yaml-cpp urdfdom::urdfdom_model
+set(TENON_MAY_USE_shared_config shared shared_canopen shared_system yaml-cpp urdfdom::urdfdom_model
                                 console_bridge::console_bridge nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
 set(TENON_MAY_USE_planner       shared planner_belief planner_search planner_judge)
@@ -51,14 +52,14 @@ set(TENON_MAY_USE_executor_telemetry      shared shared_system executor_states e
                                           lcmtypes LCM::lcm Threads::Threads
                                           nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_hw_can        shared shared_system)
-set(TENON_MAY_USE_hw_canopen    shared)
-set(TENON_MAY_USE_hw_cia402     shared)
-set(TENON_MAY_USE_hw_arm        shared hw_canopen hw_cia402)
+set(TENON_MAY_USE_hw_canopen    shared shared_canopen)
+set(TENON_MAY_USE_hw_cia402     shared shared_canopen)
+set(TENON_MAY_USE_hw_arm        shared shared_canopen hw_canopen hw_cia402)
 set(TENON_MAY_USE_hw_load       shared hw_arm)
 set(TENON_MAY_USE_hw_check      shared shared_eds hw_canopen hw_arm hw_load)
 set(TENON_MAY_USE_sim_physics    shared ODE::ODE)
 # The arm's links and joints are bodies of the same engine.
-set(TENON_MAY_USE_sim_cell       shared shared_eds sim_physics ODE::ODE nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_sim_cell       shared shared_canopen shared_eds sim_physics ODE::ODE nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_sim_evaluation shared shared_system shared_drawing sim_cell
                                  nlohmann_json::nlohmann_json)
 # The evaluation runs executor and virtual arm in lockstep inside one process.

@@ -7,6 +7,7 @@
 #include "hw/cia402/drive_state.h"
 #include "shared/base/time_units.h"
 #include "shared/canopen/constants.h"
+#include "shared/canopen/robot_drives.h"
 
 namespace tenon::hw {
 namespace {
@@ -16,7 +17,7 @@ using cia402::DriveState;
 
 std::vector<DriveProfile> drives_of(const Robot& robot) {
   std::vector<DriveProfile> drives;
-  for (const Joint& joint : robot.joints) drives.push_back(joint.drive);
+  for (const Joint& joint : robot.joints) drives.push_back(canopen_drive(joint).profile);
   return drives;
 }
 

@@ -9,6 +9,7 @@
 #include "hw/canopen/sdo.h"
 #include "shared/base/time_units.h"
 #include "shared/canopen/constants.h"
+#include "shared/canopen/robot_drives.h"
 
 namespace tenon::hw {
 namespace {
@@ -40,8 +41,9 @@ BringUp::BringUp(const Robot& robot)
   };
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const Joint& joint = robot.joints[i];
-    add_node(joint.node, joint.drive.boot_s, joint_settings(robot, i));
-    if (!takes_stop(joint.drive)) known_.push_back({SettingNote::Kind::kNoStop, joint.node});
+    add_node(joint.node, canopen_drive(joint).profile.boot_s, joint_settings(robot, i));
+    if (!takes_stop(canopen_drive(joint).profile))
+      known_.push_back({SettingNote::Kind::kNoStop, joint.node});
   }
   add_node(robot.sensor.node, boot_s(robot, robot.sensor.node), sensor_settings(robot));
   runner_.reset(known_);

@@ -21,6 +21,7 @@
 #include <cstdint>
 
 #include "shared/canopen/constants.h"
+#include "shared/canopen/robot_drives.h"
 #include "shared/cell/robot.h"
 
 namespace tenon::hw {
@@ -33,7 +34,7 @@ inline constexpr std::uint32_t kJointFeedbackCobId = 0x190;
 /// @param joint its place in the robot's order
 [[nodiscard]] inline std::uint32_t joint_feedback_cob_id(const Robot& robot, std::size_t joint) {
   const Joint& it = robot.joints[joint];
-  if (it.drive.fixed_identifiers) return tenon::canopen::kTpdo1 + it.node;
+  if (canopen_drive(it).profile.fixed_identifiers) return tenon::canopen::kTpdo1 + it.node;
   return kJointFeedbackCobId + static_cast<std::uint32_t>(joint);
 }
 [[nodiscard]] constexpr std::uint32_t joint_command_cob_id(std::uint8_t node) {

@@ -8,6 +8,7 @@
 #include "hw/arm/node_settings.h"
 #include "shared/base/text.h"
 #include "shared/canopen/constants.h"
+#include "shared/canopen/robot_drives.h"
 
 namespace tenon::hw {
 namespace {
@@ -62,7 +63,7 @@ Action action_of(Treatment treatment) {
 
 ObjectSetting setting_of(const Robot& robot, const Joint& joint, DriveObject object) {
   const DriveObjectRow& row = row_of(object);
-  const DriveProfile::Object& how = joint.drive.object(object);
+  const DriveProfile::Object& how = canopen_drive(joint).profile.object(object);
   ObjectSetting setting{action_of(how.treatment), row.index, row.sub, row.size_bytes,
                         wanted_value(robot, joint, object)};
   if (object == DriveObject::kSupportedModes) setting.compare_mask = setting.value;
@@ -79,7 +80,7 @@ void append_if_other(Settings& settings, const Joint& joint, ObjectSetting setti
   looked_at.action = Action::kCompare;
   settings.push_back(looked_at);
   if (setting.index == tenon::canopen::kSyncOverflow &&
-      joint.drive.object(DriveObject::kSyncPeriod).presence != Presence::kAbsent) {
+      canopen_drive(joint).profile.object(DriveObject::kSyncPeriod).presence != Presence::kAbsent) {
     settings.push_back(
         {Action::kWriteIfOther, tenon::canopen::kSyncPeriod, 0, 4, 0, 0xFFFFFFFF, true});
   }
@@ -127,7 +128,7 @@ std::uint32_t wanted_value(const Robot& robot, const Joint& joint, DriveObject o
   const InterpolationPeriod period = interpolation_period(robot.cycle_us).value();
   switch (object) {
     case DriveObject::kSupportedModes:
-      return 1u << (static_cast<unsigned>(joint.mode) - 1);
+      return 1u << (static_cast<unsigned>(canopen_drive(joint).mode) - 1);
     case DriveObject::kSyncCobId:
       return tenon::canopen::kSync;
     case DriveObject::kSyncOverflow:
@@ -165,7 +166,7 @@ std::uint32_t wanted_value(const Robot& robot, const Joint& joint, DriveObject o
 void append_drive_objects(Settings& settings, const Robot& robot, const Joint& joint,
                           DriveObject first, DriveObject last) {
   for (const DriveObjectRow& row : kDriveObjectRows) {
-    const DriveProfile::Object& how = joint.drive.object(row.object);
+    const DriveProfile::Object& how = canopen_drive(joint).profile.object(row.object);
     if (row.object < first || row.object > last || how.presence == Presence::kAbsent) continue;
     const ObjectSetting setting = setting_of(robot, joint, row.object);
     const bool of_sync =
@@ -179,7 +180,7 @@ void append_drive_objects(Settings& settings, const Robot& robot, const Joint& j
 }
 
 void append_extra_objects(Settings& settings, const Joint& joint) {
-  for (const DriveProfile::Extra& extra : joint.drive.extra) {
+  for (const DriveProfile::Extra& extra : canopen_drive(joint).profile.extra) {
     if (extra.how.presence == Presence::kAbsent) continue;
     settings.push_back({action_of(extra.how.treatment), extra.index, extra.sub, extra.size_bytes,
                         extra.value, 0xFFFFFFFF, extra.how.presence == Presence::kOptional});
@@ -190,15 +191,17 @@ std::vector<std::string> drive_remarks(const Robot& robot) {
   std::vector<std::string> lines;
   std::vector<std::string> told;
   for (const Joint& joint : robot.joints) {
-    if (std::find(told.begin(), told.end(), joint.drive.name) != told.end()) continue;
+    if (std::find(told.begin(), told.end(), canopen_drive(joint).profile.name) != told.end())
+      continue;
     std::string joints;
     for (const Joint& other : robot.joints) {
-      if (other.drive.name == joint.drive.name) joints += (joints.empty() ? "" : ", ") + other.name;
+      if (canopen_drive(other).profile.name == canopen_drive(joint).profile.name)
+        joints += (joints.empty() ? "" : ", ") + other.name;
     }
-    told.push_back(joint.drive.name);
-    for (const std::string& remark : remarks_of(joint.drive)) {
-      lines.push_back(format("joints %s (drive %s): %s", joints.c_str(), joint.drive.name.c_str(),
-                             remark.c_str()));
+    told.push_back(canopen_drive(joint).profile.name);
+    for (const std::string& remark : remarks_of(canopen_drive(joint).profile)) {
+      lines.push_back(format("joints %s (drive %s): %s", joints.c_str(),
+                             canopen_drive(joint).profile.name.c_str(), remark.c_str()));
     }
   }
   return lines;

@@ -9,6 +9,7 @@
 #include "hw/cia402/enabling.h"
 #include "shared/base/bytes.h"
 #include "shared/canopen/constants.h"
+#include "shared/canopen/robot_drives.h"
 
 namespace tenon::hw {
 
@@ -16,7 +17,7 @@ using cia402::DriveState;
 
 JointChannel::JointChannel(const Joint& joint, std::uint32_t cycle_us)
     : node_(joint.node),
-      interpolated_(joint.mode == Joint::Mode::kInterpolatedPosition),
+      interpolated_(canopen_drive(joint).mode == DriveMode::kInterpolatedPosition),
       counts_per_unit_(joint.counts_per_unit),
       zero_counts_(joint.zero_counts),
       rated_effort_(joint.rated_effort),

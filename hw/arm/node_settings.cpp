@@ -11,6 +11,7 @@
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/canopen/constants.h"
+#include "shared/canopen/robot_drives.h"
 #include "shared/ports/arm.h"
 
 namespace tenon::hw {
@@ -23,7 +24,7 @@ using Settings = std::vector<ObjectSetting>;
 
 constexpr std::uint32_t kDriveProfile = 402;
 void append_mode(Settings& settings, const Joint& joint) {
-  const auto mode = static_cast<std::uint32_t>(joint.mode);
+  const auto mode = static_cast<std::uint32_t>(canopen_drive(joint).mode);
   settings.push_back({Action::kWrite, tenon::canopen::kMode, 0, 1, mode});
   settings.push_back({Action::kAwait, tenon::canopen::kModeDisplay, 0, 1, mode});
 }
@@ -33,7 +34,7 @@ canopen::PdoFreedom freedom_of(const DriveProfile& drive) {
 }
 
 canopen::PdoEntry target_of(const Joint& joint) {
-  return joint.mode == Joint::Mode::kInterpolatedPosition
+  return canopen_drive(joint).mode == DriveMode::kInterpolatedPosition
              ? canopen::PdoEntry{tenon::canopen::kInterpolationData, 1, 32}
              : canopen::PdoEntry{tenon::canopen::kTargetPosition, 0, 32};
 }
@@ -59,7 +60,7 @@ void append_receive_pdos(Settings& settings, const Robot& robot, std::size_t ind
                          joint_command_cob_id(joint.node),
                          canopen::kEverySync,
                          {controlword, target}},
-                        freedom_of(joint.drive));
+                        freedom_of(canopen_drive(joint).profile));
     return;
   }
   // Both of a pair take the same frame, each its own half.
@@ -89,7 +90,7 @@ std::uint8_t stop_rpdo(const Robot& robot) { return robot.targets_per_frame == 1
 /// What a device sends or acts on unasked.
 void append_unused_pdos(Settings& settings, const Robot& robot, const Joint& joint) {
   using Direction = PdoConfiguration::Direction;
-  const int first = stop_rpdo(robot) + (takes_stop(joint.drive) ? 1 : 0);
+  const int first = stop_rpdo(robot) + (takes_stop(canopen_drive(joint).profile) ? 1 : 0);
   for (auto number = static_cast<std::uint8_t>(first); number <= 4; ++number) {
     canopen::append_unused_pdo(settings, Direction::kReceive, joint.node, number);
   }
@@ -155,7 +156,7 @@ void check_joint(const Robot& robot, const Joint& joint) {
 void check_fixed(const Robot& robot) {
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const Joint& joint = robot.joints[i];
-    const DriveProfile& drive = joint.drive;
+    const DriveProfile& drive = canopen_drive(joint).profile;
     const bool fixed =
         drive.fixed_mapping || drive.fixed_identifiers || drive.fixed_transmission_types;
     if (fixed && robot.targets_per_frame != 1) {
@@ -182,7 +183,7 @@ void check_fixed(const Robot& robot) {
 double boot_s(const Robot& robot, std::uint8_t node) {
   const auto joint = std::find_if(robot.joints.begin(), robot.joints.end(),
                                   [&](const Joint& each) { return each.node == node; });
-  return joint == robot.joints.end() ? DriveProfile{}.boot_s : joint->drive.boot_s;
+  return joint == robot.joints.end() ? DriveProfile{}.boot_s : canopen_drive(*joint).profile.boot_s;
 }
 
 ObjectSetting heartbeat_setting(const Robot& robot) {
@@ -201,15 +202,15 @@ Settings joint_settings(const Robot& robot, std::size_t index) {
   append_drive_objects(settings, robot, joint, DriveObject::kMasterWatch,
                        DriveObject::kPositionMax);
   append_receive_pdos(settings, robot, index);
-  if (takes_stop(joint.drive)) append_stop_pdo(settings, robot);
+  if (takes_stop(canopen_drive(joint).profile)) append_stop_pdo(settings, robot);
   canopen::append_pdo(settings,
                       {PdoConfiguration::Direction::kTransmit,
                        1,
                        joint_feedback_cob_id(robot, index),
                        canopen::kEverySync,
                        {{kStatusword, 0, 16}, {kTorqueActual, 0, 16}, {kPositionActual, 0, 32}}},
-                      freedom_of(joint.drive));
-  if (!joint.drive.fixed_identifiers) append_unused_pdos(settings, robot, joint);
+                      freedom_of(canopen_drive(joint).profile));
+  if (!canopen_drive(joint).profile.fixed_identifiers) append_unused_pdos(settings, robot, joint);
   return settings;
 }
 

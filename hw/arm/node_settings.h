@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hw/canopen/object_setting.h"
+#include "shared/canopen/drive_profile.h"
 #include "shared/cell/robot.h"
 
 namespace tenon::hw {

@@ -9,6 +9,7 @@
 #include "hw/bus_load/bus_load.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
+#include "shared/canopen/robot_drives.h"
 
 namespace tenon::hw {
 namespace {
@@ -239,10 +240,10 @@ struct JointVerdict {
 JointVerdict append_joint(const Robot& robot, std::size_t joint, const DeviceFile* file,
                           std::string& text) {
   const Joint& it = robot.joints[joint];
-  text +=
-      format("node %u (%s), drive %s, %s\n", static_cast<unsigned>(it.node), it.name.c_str(),
-             it.drive.name.c_str(), file == nullptr ? "no description file" : file->name.c_str());
-  JointVerdict verdict{0, takes_stop(it.drive)};
+  text += format("node %u (%s), drive %s, %s\n", static_cast<unsigned>(it.node), it.name.c_str(),
+                 canopen_drive(it).profile.name.c_str(),
+                 file == nullptr ? "no description file" : file->name.c_str());
+  JointVerdict verdict{0, takes_stop(canopen_drive(it).profile)};
   for (const CheckLine& line : check_joint(robot, joint, file)) {
     verdict.refused += line.verdict == Verdict::kRefused ? 1 : 0;
     const bool gives_up = line.setting.action == Action::kTry && line.verdict == Verdict::kOther;

@@ -1,11 +1,11 @@
 #pragma once
 // A robot as hw/robots/NAME gives it: its URDF the mechanics, robot.yaml the drives and the bus.
 
+#include <any>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "shared/canopen/drive_profile.h"
 #include "shared/math/pose.h"
 
 namespace tenon {
@@ -19,14 +19,13 @@ struct LinkInertia {
 
 struct Joint {
   enum class Kind : std::uint8_t { kPrismatic, kRevolute };
-  enum class Mode : std::uint8_t { kInterpolatedPosition = 7, kCyclicSynchronousPosition = 8 };
   std::string name;
   Kind kind = Kind::kPrismatic;
   Pose origin;                      ///< joint frame in its parent link's frame at position 0
   Vector3 axis = Vector3::UnitX();  ///< unit, in the joint frame
-  std::uint8_t node = 0;            ///< CANopen node id, 1..127
-  Mode mode = Mode::kCyclicSynchronousPosition;
-  DriveProfile drive;            ///< what its drive has and lacks
+  std::uint8_t node = 0;            ///< its drive's number on the bus, 1..127
+  /// What its drive's protocol alone knows of it, in a type of that protocol's own.
+  std::any drive;
   double counts_per_unit = 0.0;  ///< per m or rad; negative where the drive counts backwards
   double zero_counts = 0.0;      ///< counts at position 0
   double lower = 0.0;            ///< m or rad
@@ -34,8 +33,8 @@ struct Joint {
   double speed_max = 0.0;  ///< m/s or rad/s
   double acceleration_max = 0.0;
   double effort_max = 0.0;           ///< N or Nm
-  double rated_effort = 0.0;         ///< N or Nm, unit of 6077h is a thousandth of it
-  double following_error_max = 0.0;  ///< m or rad, written to 6065h
+  double rated_effort = 0.0;         ///< N or Nm, of motor and gear at the joint
+  double following_error_max = 0.0;  ///< m or rad, beyond which a drive stops by itself
   double stiffness = 0.0;            ///< N/m or Nm/rad, of servo and gear under load
   LinkInertia link;                  ///< the link behind the joint
 };
@@ -45,7 +44,7 @@ struct Joint {
   return joint.kind == Joint::Kind::kPrismatic ? "m" : "rad";
 }
 
-/// A force/torque node: two TPDOs of four little-endian i16 (three values and a sample counter).
+/// A force/torque node: two frames of four little-endian i16 (three values and a sample counter).
 struct ForceTorqueSensor {
   std::uint8_t node = 0;
   double force_per_count_N = 0.0;
@@ -66,16 +65,15 @@ struct Robot {
   std::uint32_t heartbeat_ms = 100;  ///< of every node and of the master
   std::uint32_t heartbeat_timeout_ms = 300;
   std::uint8_t master_node = 127;
-  /// Joints whose targets share a frame: 1, or 2 where single ones would overload the bus. Packed
-  /// targets travel without controlwords, which then have frames of their own, sent on change.
+  /// Joints whose targets share a frame: 1, or 2 where single ones would overload the bus.
   int targets_per_frame = 1;
   double response_lag_s = 0.0;       ///< tau_arm: setpoint to motion, protocol_lag_s() included
   double stiffness_Npm = 1e6;        ///< of the arm at the tool, physical
   int measurement_delay_cycles = 1;  ///< n
 };
 
-/// What the protocol alone takes from a setpoint to the motion: a target is taken up with the next
-/// SYNC and reached with the one after.
+/// What the protocol alone takes from a setpoint to the motion: a target is taken up as the next
+/// cycle begins and reached as the one after does.
 [[nodiscard]] inline double protocol_lag_s(double cycle_s) { return 2.0 * cycle_s; }
 
 /// tau = (n + 1/2) T + tau_arm: from a force to the motion that answers it.

@@ -1,8 +1,10 @@
 #pragma once
-// Where a robot's file means its drives' profiles to be. Offline.
+// The profiles of drives: where a robot's file means them to be, and what they say. Offline.
 
 #include <filesystem>
 #include <string>
+
+#include "shared/canopen/drive_profile.h"
 
 namespace tenon {
 
@@ -14,5 +16,8 @@ namespace tenon {
   if (drive.ends_with(".yaml")) return (folder / drive).lexically_normal();
   return (folder / ".." / ".." / "drives" / (drive + ".yaml")).lexically_normal();
 }
+
+/// hw/drives/NAME.yaml. What the file leaves out is CiA 402 by the book. @throws InputError
+[[nodiscard]] DriveProfile load_drive(const std::filesystem::path& file);
 
 }  // namespace tenon

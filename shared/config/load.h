@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "shared/canopen/drive_profile.h"
 #include "shared/cell/cell.h"
 #include "shared/experiment/world_ranges.h"
 #include "shared/plan/plan.h"
@@ -22,9 +21,6 @@ namespace tenon {
 
 /// The names of a task file's variants, in its order.
 [[nodiscard]] std::vector<std::string> task_variants(const std::filesystem::path& file);
-
-/// hw/drives/NAME.yaml. What the file leaves out is CiA 402 by the book.
-[[nodiscard]] DriveProfile load_drive(const std::filesystem::path& file);
 
 /// hw/robots/NAME/robot.yaml, the URDF that it names, and the profiles of the drives that it names.
 [[nodiscard]] Robot load_robot(const std::filesystem::path& file);

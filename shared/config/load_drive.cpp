@@ -10,6 +10,7 @@
 
 #include "shared/canopen/constants.h"
 #include "shared/canopen/drive_profile.h"
+#include "shared/config/drive_file.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/yaml_value.h"

@@ -10,6 +10,7 @@
 
 #include "shared/base/text.h"
 #include "shared/canopen/drive_profile.h"
+#include "shared/canopen/robot_drives.h"
 #include "shared/config/drive_file.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
@@ -82,13 +83,13 @@ class Drives {
   std::map<std::filesystem::path, DriveProfile> read_;
 };
 
-Joint::Mode read_mode(const Value& value, const DriveProfile& drive) {
+DriveMode read_mode(const Value& value, const DriveProfile& drive) {
   const std::uint8_t mode = value.choice({"7", "8"}) == 0 ? 7 : 8;
   if (std::find(drive.modes.begin(), drive.modes.end(), mode) == drive.modes.end()) {
     value.refuse_value(format("%u, as drive ", static_cast<unsigned>(drive.modes.front())) +
                        drive.name + " offers");
   }
-  return static_cast<Joint::Mode>(mode);
+  return static_cast<DriveMode>(mode);
 }
 
 /// What drive and bus add to a joint of the URDF.
@@ -98,8 +99,8 @@ void read_drive(const Value& value, std::set<std::int64_t>& nodes, Drives& drive
       value, {"name", "node", "drive", "mode", "zero_counts", keys.counts_per_unit,
               keys.acceleration_max, keys.rated_effort, keys.following_error_max, keys.stiffness});
   joint.node = read_node(map.at("node"), nodes);
-  if (const auto drive = map.find("drive")) joint.drive = drives.read(*drive);
-  joint.mode = read_mode(map.at("mode"), joint.drive);
+  if (const auto drive = map.find("drive")) canopen_drive(joint).profile = drives.read(*drive);
+  canopen_drive(joint).mode = read_mode(map.at("mode"), canopen_drive(joint).profile);
   read_counts(map, keys, joint);
   joint.acceleration_max = map.number(keys.acceleration_max, positive_to(1e4));
   joint.rated_effort = map.number(keys.rated_effort, positive_to(1e5));

@@ -37,14 +37,14 @@ enum class ArmFaultKind : std::uint8_t {
   kConfiguration = 2,    ///< a node refused or did not keep a setting
   kHeartbeatLost = 3,    ///< a node fell silent
   kUnexpectedReset = 4,  ///< boot-up from a running node
-  kDriveFault = 5,       ///< statusword fault; code is its error code
+  kDriveFault = 5,       ///< the drive says so; code is its error code
   kDriveState = 6,       ///< a drive left operation enabled unasked
   kFeedbackMissing = 7,  ///< too many cycles without a joint's feedback
   kSensorStale = 8,      ///< too many cycles without a wrench
   kSensorInvalid = 9,    ///< saturated, torn or self-reported fault
   kBusDown = 10,
   kBusOff = 11,
-  kOtherMaster = 12,  ///< another master sends on the bus; code is the COB-ID that betrayed it
+  kOtherMaster = 12,  ///< another master sends on the bus; code is the identifier that betrayed it
   kQueueFull = 13,    ///< our own frames were refused; code: cycles in a row
   kBusSilent = 14,    ///< nobody answered at all; code: cycles in a row
   kSetpointNotFinite = 15,  ///< of a joint that follows; nothing of it was sent
@@ -54,10 +54,10 @@ enum class ArmFaultKind : std::uint8_t {
 /// Plain data, so that real-time code can carry it. describe() in hw gives the line for people.
 struct ArmFault {
   ArmFaultKind kind = ArmFaultKind::kNone;
-  std::uint8_t node = 0;     ///< CANopen node, 0 where none is meant
-  std::uint32_t object = 0;  ///< index << 8 | sub-index of the object concerned, or 0
-  std::uint32_t code = 0;    ///< EMCY or error code, SDO abort code, or statusword
-  bool refused = false;      ///< of kConfiguration: code is an abort code, and no value
+  std::uint8_t node = 0;     ///< number on the bus, 0 where none is meant
+  std::uint32_t object = 0;  ///< of the node's own, in its protocol's terms, or 0
+  std::uint32_t code = 0;    ///< the node's own: of its error, of its refusal, or its status
+  bool refused = false;      ///< of kConfiguration: code says why, and is no value
 };
 
 /// A force at which an arm stops all drives by itself, as soon as it hears of it.
@@ -98,12 +98,12 @@ class Arm {
   /// False and state kFault: it failed, see fault(). Not real-time.
   [[nodiscard]] virtual bool prepare(std::int64_t now_ns) = 0;
 
-  /// Opens a control cycle (SYNC leaves here).
+  /// Opens a control cycle: what makes the devices act and answer leaves here.
   virtual void start_cycle(std::int64_t now_ns) noexcept = 0;
   /// Takes in what has arrived. True once everything that this cycle expects is there.
   [[nodiscard]] virtual bool receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept = 0;
-  /// Closes the cycle: setpoints and state request leave for the drives, heartbeat when due. While
-  /// the drives are not enabled the positions are ignored and the actual ones are sent.
+  /// Closes the cycle: setpoints and state request leave for the drives, and the sign of life when
+  /// due. While the drives are not enabled the positions are ignored and the actual ones are sent.
   virtual void command(std::int64_t now_ns, ArmRequest request,
                        const JointVector& position) noexcept = 0;
 

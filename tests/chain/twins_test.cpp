@@ -11,6 +11,7 @@
 
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/drive_settings.h"
+#include "shared/canopen/robot_drives.h"
 #include "tests/chain/fault_matrix/fault_cell.h"
 #include "tests/chain/fault_matrix/fault_kind.h"
 #include "tests/support/planned.h"
@@ -46,7 +47,7 @@ struct TwinRun {
 
 TEST(Twins, ARobotOfDrivesByTheBookIsRefusedByTheRealOnes) {
   TwinRun twin({"epos4", "gantry3"});
-  for (Joint& joint : twin.cell.robot.joints) joint.drive = DriveProfile{};
+  for (Joint& joint : twin.cell.robot.joints) canopen_drive(joint).profile = DriveProfile{};
   WholeRun::Options options;
   options.twins = twins_of(twin.cell.robot, "epos4");
   WholeRun run(twin.cell, twin.planned.task, twin.planned.plan, options);
@@ -101,9 +102,9 @@ bool needs_the_drives(const FaultKind& kind) {
 
 TEST_P(TwinFaults, EveryFaultThatItCanHaveIsRiddenOutOrStoppedByName) {
   const Ground ground(GetParam().cell, GetParam().cell, GetParam().plan_of);
-  const bool alone =
-      ground.cell.robot.joints[0].drive.object(DriveObject::kConnectionOption).presence ==
-      Presence::kAbsent;
+  const bool alone = canopen_drive(ground.cell.robot.joints[0])
+                         .profile.object(DriveObject::kConnectionOption)
+                         .presence == Presence::kAbsent;
   for (const FaultKind& kind : fault_kinds()) {
     // Answers 1.2 ms late are in time at 100 Hz.
     if (ground.cell.robot.cycle_us > 2000 && std::string(kind.name) == "frames delayed") continue;

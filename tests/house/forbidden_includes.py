@@ -18,21 +18,22 @@ ALLOWED_TO_ALL = "shared/base/error.h"
 PLANNER = {"shared", "planner_belief", "planner_search", "planner_judge"}
 CONTROL = {"shared", "executor_faults", "executor_states", "executor_record", "executor_motion", "executor_sensing"}
 LOOP = CONTROL | {"executor_dry_run"}
-HW_ARM = {"shared", "hw_canopen", "hw_cia402"}
+HW_ARM = {"shared", "shared_canopen", "hw_canopen", "hw_cia402"}
 MAY_INCLUDE = {
     "shared": set(),
+    "shared_canopen": {"shared"},
     "shared_system": {"shared"},
     "shared_drawing": {"shared"},
     "shared_eds": {"shared"},
-    "shared_config": {"shared", "shared_system"},
+    "shared_config": {"shared", "shared_canopen", "shared_system"},
     "planner_belief": {"shared", "shared_system"},
     "planner_search": {"shared", "planner_belief"},
     "planner_judge": {"shared", "planner_belief"},
     "planner": PLANNER,
     "planner_report": PLANNER | {"shared_drawing", "planner"},
     "sim_physics": {"shared"},
-    "sim_cell": {"shared", "shared_eds", "sim_physics"},
-    "sim_evaluation": {"shared", "shared_eds", "shared_system", "shared_drawing", "sim_cell"},
+    "sim_cell": {"shared", "shared_canopen", "shared_eds", "sim_physics"},
+    "sim_evaluation": {"shared", "shared_canopen", "shared_eds", "shared_system", "shared_drawing", "sim_cell"},
     "sim_evaluation_chain": LOOP | HW_ARM | {"shared_eds", "shared_system", "sim_cell", "sim_evaluation",
                                              "executor_loop",
                                              "executor_identification", "executor_telemetry", "hw_arm"},
@@ -47,8 +48,8 @@ MAY_INCLUDE = {
     "executor_identification": LOOP | {"executor_loop"},
     "executor_telemetry": LOOP | {"shared_system", "executor_loop", "executor_identification", "lcmtypes"},
     "hw_can": {"shared", "shared_system"},
-    "hw_canopen": {"shared"},
-    "hw_cia402": {"shared"},
+    "hw_canopen": {"shared", "shared_canopen"},
+    "hw_cia402": {"shared", "shared_canopen"},
     "hw_arm": HW_ARM,
     "hw_load": HW_ARM | {"hw_arm"},
     "hw_check": HW_ARM | {"shared_eds", "hw_arm", "hw_load"},
@@ -58,7 +59,7 @@ MAY_INCLUDE = {
                                    "executor_identification", "executor_telemetry", "hw_can", "hw_arm", "hw_load"},
     "tenon-monitor": LOOP | {"shared_config", "shared_system", "executor_loop", "executor_identification",
                              "executor_telemetry"},
-    "tenon-sim": {"shared", "shared_eds", "shared_config", "shared_system", "sim_cell", "hw_can"},
+    "tenon-sim": {"shared", "shared_canopen", "shared_eds", "shared_config", "shared_system", "sim_cell", "hw_can"},
     "tenon-evaluate": HW_ARM | {"shared_eds", "shared_config", "shared_system", "sim_evaluation_chain",
                                 "sim_evaluation", "sim_cell", "hw_arm", "hw_load"},
     "tenon-can": HW_ARM | {"shared_eds", "shared_config", "shared_system", "hw_can", "hw_arm", "hw_load",

@@ -56,6 +56,8 @@ RESERVED = [
      lambda path, main: main or path == "shared/config/command_line.h"),
     ("nlohmann-json", re.compile(r"^nlohmann/"),
      lambda path, main: not path.startswith("shared/") or path.startswith("shared/config/")),
+    ("CANopen", re.compile(r"^shared/canopen/"),
+     lambda path, main: path.startswith(("shared/canopen/", "shared/config/", "hw/", "sim/cell/", "tests/"))),
     ("GoogleTest", re.compile(r"^(gtest|gmock|benchmark)/"), lambda path, main: path.startswith("tests/")),
     ("threads, clocks and the operating system",
      re.compile(r"^(thread|mutex|shared_mutex|condition_variable|future|semaphore|latch|barrier|"
@@ -77,6 +79,14 @@ CODE = [
     ("skips a test; what a test needs is set up, or it fails", re.compile(r"\bGTEST_SKIP\b"),
      lambda path, main: False),
     ("switches assertions off", re.compile(r"#\s*define\s+NDEBUG\b"), lambda path, main: False),
+]
+# (what, pattern in the text, comments and strings included, files that it is kept out of)
+WORDS = [
+    # The proof that another family of drives fits behind them.
+    ("names CANopen, which ports and cells know nothing of",
+     re.compile(r"can_?open|\bCiA\b|\b[RT]?PDOs?\b|\bSDO\b|\bNMT\b|\bEMCY\b|\bSYNC\b|\bCOB|\b[0-9A-F]{4}h\b|"
+                r"\b(control|status)words?\b|\bDriveProfile\b", re.I),
+     ("shared/ports/", "shared/cell/")),
 ]
 
 
@@ -160,6 +170,10 @@ def check_file(root, path):
         if match:
             for problem in check_include(path, main, match.group(1), match.group(2)):
                 yield number, f"include of {match.group(2)} {problem}"
+    for number, line in enumerate(lines, 1):
+        for what, pattern, folders in WORDS:
+            if path.startswith(folders) and pattern.search(line):
+                yield number, what
     code = without_comments_and_strings(text)
     for number, length in functions(code):
         if length > MAX_FUNCTION_LINES:
@@ -247,6 +261,13 @@ SELF_TEST = [
      + "  }\n};\nint y[] = {\n" + "".join(f"  {i},\n" for i in range(70)) + "};\n", None),
     ("sim/BadName.cpp", "int x;\n", "snake_case"),
     ("sim/s.hpp", "int x;\n", "sources are .h and .cpp"),
+    ("executor/loop/canopen.cpp", '#include "shared/canopen/constants.h"\n', "(CANopen) is not for this file"),
+    ("shared/motion/canopen.cpp", '#include "shared/canopen/constants.h"\n', "(CANopen) is not for this file"),
+    ("shared/cell/robot.h", '#pragma once\n#include "shared/canopen/constants.h"\n', "(CANopen) is not for this file"),
+    ("shared/config/load.cpp", '#include "shared/canopen/constants.h"\n', None),
+    ("shared/cell/sensor.h", "#pragma once\n// Two TPDOs of four values.\n", "names CANopen"),
+    ("shared/ports/arm.h", "#pragma once\nint statusword = 0x1234;  // 6041h\n", "names CANopen"),
+    ("shared/ports/can_bus.h", "#pragma once\nstruct CanBus {};  // opens nothing by itself\n", None),
     ("tests/hw/t.cpp", "TEST(A, B) { GTEST_SKIP(); }\n", "skips a test"),
     ("shared/t.cpp", "#include <shared/plan/plan.h>\n", "takes quotes"),
 ]

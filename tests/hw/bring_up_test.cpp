@@ -10,6 +10,7 @@
 
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/node_settings.h"
+#include "shared/canopen/robot_drives.h"
 #include "tests/hw/gantry_on_bus.h"
 #include "tests/support/frame_filter.h"
 #include "tests/support/refusal.h"
@@ -121,7 +122,7 @@ void fix_mapping(ScriptedNode& node, std::uint32_t target) {
 
 TEST(BringUp, AFixedMappingThatIsTheOneWantedIsTakenAsItIs) {
   Robot robot = gantry_robot();
-  robot.joints[0].mode = Joint::Mode::kInterpolatedPosition;
+  canopen_drive(robot.joints[0]).mode = DriveMode::kInterpolatedPosition;
   GantryOnBus gantry(robot);
   gantry.nodes[0]->keeps[0x650200] = 0x43;
   fix_mapping(*gantry.nodes[0], 0x60C10120);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/canopen/robot_drives.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "tests/support/places.h"
@@ -51,7 +52,7 @@ TEST(DeviceCheck, TheShippedRobotsComeUpOnTheirOwnDrives) {
 
 TEST(DeviceCheck, ADriveByTheBookIsRefusedByTheObjectsThatTheLwaLacks) {
   Robot it = robot("lwa4p");
-  for (Joint& joint : it.joints) joint.drive = DriveProfile{};
+  for (Joint& joint : it.joints) canopen_drive(joint).profile = DriveProfile{};
   const DeviceFile file = twin("lwa4p");
   std::vector<std::uint32_t> refused;
   for (const CheckLine& line : check_joint(it, 0, &file)) {
@@ -66,7 +67,7 @@ TEST(DeviceCheck, ADriveByTheBookIsRefusedByTheObjectsThatTheLwaLacks) {
 
 TEST(DeviceCheck, SaysRangeAccessAndSize) {
   Robot it = robot("epos4");
-  for (Joint& joint : it.joints) joint.drive = DriveProfile{};
+  for (Joint& joint : it.joints) canopen_drive(joint).profile = DriveProfile{};
   DeviceFile file = twin("epos4");
   file.objects[0x608500].type = 0x0006;
   file.objects[0x101700].access = DeviceObject::Access::kReadOnly;
@@ -114,7 +115,7 @@ TEST(DeviceCheck, ADriveWithoutARpdoForTheStopIsNamedAndSparedTheRest) {
 TEST(DeviceCheck, ADriveWhosePdosAreFixedIsNamedWithoutAFile) {
   Robot it = robot("epos4");
   EXPECT_EQ(check_report(it, {}).text.find("has no free RPDO"), std::string::npos);
-  it.joints[1].drive.fixed_mapping = true;
+  canopen_drive(it.joints[1]).profile.fixed_mapping = true;
   const std::string text = check_report(it, {}).text;
   EXPECT_NE(text.find("node 2 (y): has no free RPDO"), std::string::npos) << text;
   EXPECT_EQ(text.find("has no free RPDO"), text.rfind("has no free RPDO")) << text;

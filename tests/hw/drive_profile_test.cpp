@@ -11,6 +11,8 @@
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/drive_settings.h"
 #include "hw/arm/node_settings.h"
+#include "shared/canopen/robot_drives.h"
+#include "shared/config/drive_file.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "tests/hw/gantry_on_bus.h"
@@ -27,7 +29,7 @@ DriveProfile shipped(const std::string& name) {
 
 Robot robot_with(const DriveProfile& drive) {
   Robot robot = gantry_robot();
-  for (Joint& joint : robot.joints) joint.drive = drive;
+  for (Joint& joint : robot.joints) canopen_drive(joint).profile = drive;
   return robot;
 }
 
@@ -69,7 +71,7 @@ TEST(DriveProfile, TheProtocolListsEveryObjectThatItTellsOf) {
 TEST(DriveProfile, WhatAProfileCallsAbsentIsNeverAskedFor) {
   const DriveProfile lwa = shipped("schunk_lwa4p");
   Robot robot = robot_with(lwa);
-  for (Joint& joint : robot.joints) joint.mode = Joint::Mode::kInterpolatedPosition;
+  for (Joint& joint : robot.joints) canopen_drive(joint).mode = DriveMode::kInterpolatedPosition;
   GantryOnBus gantry(robot);
   const std::vector<std::uint32_t> lacking = {0x100600, 0x600700, 0x605A00, 0x605B00,
                                               0x605C00, 0x606600, 0x607200, 0x608500};
@@ -183,7 +185,7 @@ TEST(DriveProfile, FixedPdosAreComparedAndNeverWritten) {
   DriveProfile drive;
   drive.fixed_mapping = drive.fixed_identifiers = drive.fixed_transmission_types = true;
   Robot robot = gantry_robot();
-  robot.joints[2].drive = drive;
+  canopen_drive(robot.joints[2]).profile = drive;
   robot.joints[2].node = 7;
   GantryOnBus gantry(robot);
   ScriptedNode& node = *gantry.nodes[2];
@@ -208,7 +210,7 @@ TEST(DriveProfile, AFixedTransmissionTypeThatIsNotOfSyncIsNamed) {
   DriveProfile drive;
   drive.fixed_transmission_types = true;
   Robot robot = gantry_robot();
-  robot.joints[0].drive = drive;
+  canopen_drive(robot.joints[0]).profile = drive;
   GantryOnBus gantry(robot);
   EXPECT_EQ(gantry.refused(6000),
             "node 1 (x): holds 1800h:2 = 0xFF where 0x1 was asked for; check the device's limits "
@@ -217,7 +219,7 @@ TEST(DriveProfile, AFixedTransmissionTypeThatIsNotOfSyncIsNamed) {
 
 TEST(DriveProfile, FixedIdentifiersThatMeetTheForceFramesAreRefused) {
   Robot robot = gantry_robot();
-  robot.joints[0].drive.fixed_identifiers = true;
+  canopen_drive(robot.joints[0]).profile.fixed_identifiers = true;
   EXPECT_EQ(tests::refusal([&] { check_robot(robot); }),
             "robot 'gantry': joint x: its feedback stays at 181h, which another frame has (drive "
             "cia402 has fixed identifiers); give it another node than 1");
@@ -249,7 +251,7 @@ TEST(DriveProfile, ABootOfFourFifthsOfASecondIsResetOnce) {
 
 TEST(DriveProfile, ABootThatTakesAsLongAsItsProfileSaysIsAwaited) {
   Robot robot = gantry_robot();
-  robot.joints[2].drive.boot_s = 2.0;
+  canopen_drive(robot.joints[2]).profile.boot_s = 2.0;
   GantryOnBus gantry(robot);
   gantry.nodes[2]->dead = true;
   const std::int64_t start_ns = gantry.now_ns;
@@ -299,7 +301,7 @@ TEST(DriveProfile, AFaultBesideAStandingWarningHasItsOwnCode) {
 
 TEST(DriveProfile, ACodeThatItsProfileDoesNotListStops) {
   Robot robot = gantry_robot();
-  robot.joints[2].drive.warnings = {{0xFF00, 0xFFFF}};
+  canopen_drive(robot.joints[2]).profile.warnings = {{0xFF00, 0xFFFF}};
   GantryOnBus gantry(robot);
   ASSERT_TRUE(gantry.prepare_and_enable());
   gantry.nodes[2]->send(0x083, {0x10, 0x42, 0x08, 0, 0, 0, 0, 0});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hw/arm/describe_fault.h"
+#include "shared/canopen/robot_drives.h"
 #include "tests/hw/gantry_on_bus.h"
 #include "tests/support/frame_filter.h"
 
@@ -21,13 +22,13 @@ Bytes bytes_of(const CanFrame& frame) {
 }
 
 /// Six revolute joints of 1000 counts a degree.
-Robot six_axes(Joint::Mode mode, std::uint8_t first_node, int targets_per_frame) {
+Robot six_axes(DriveMode mode, std::uint8_t first_node, int targets_per_frame) {
   Robot robot = gantry_robot();
   robot.joints.resize(6, robot.joints.front());
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     robot.joints[i].name = "arm_" + std::to_string(i + 1);
     robot.joints[i].kind = Joint::Kind::kRevolute;
-    robot.joints[i].mode = mode;
+    canopen_drive(robot.joints[i]).mode = mode;
     robot.joints[i].node = static_cast<std::uint8_t>(first_node + i);
     robot.joints[i].counts_per_unit = 1000.0 * 180.0 / M_PI;
     robot.joints[i].following_error_max = 0.05;
@@ -42,7 +43,8 @@ class SixAxesOnBus : public GantryOnBus {
   explicit SixAxesOnBus(const Robot& six) : GantryOnBus(six) {
     for (std::size_t i = 0; i < robot.joints.size(); ++i) {
       // 6502h of an LWA 4P: no mode 8; else mode 8 alone.
-      const bool interpolated = robot.joints[i].mode == Joint::Mode::kInterpolatedPosition;
+      const bool interpolated =
+          canopen_drive(robot.joints[i]).mode == DriveMode::kInterpolatedPosition;
       nodes[i]->keeps[0x650200] = interpolated ? 0x43 : 0x80;
     }
   }
@@ -55,8 +57,8 @@ class SixAxesOnBus : public GantryOnBus {
   }
 };
 
-Robot lwa4p() { return six_axes(Joint::Mode::kInterpolatedPosition, 3, 1); }
-Robot packed() { return six_axes(Joint::Mode::kCyclicSynchronousPosition, 1, 2); }
+Robot lwa4p() { return six_axes(DriveMode::kInterpolatedPosition, 3, 1); }
+Robot packed() { return six_axes(DriveMode::kCyclicSynchronousPosition, 1, 2); }
 
 TEST(ProcessData, AnLwa4pKeepsItsDefaultMappings) {
   SixAxesOnBus arm(lwa4p());
@@ -98,7 +100,7 @@ TEST(ProcessData, AnLwa4psFeedbackIsStatuswordTorquePosition) {
 }
 
 TEST(ProcessData, ModeEightGoesWithoutBitFour) {
-  SixAxesOnBus arm(six_axes(Joint::Mode::kCyclicSynchronousPosition, 3, 1));
+  SixAxesOnBus arm(six_axes(DriveMode::kCyclicSynchronousPosition, 3, 1));
   ASSERT_TRUE(arm.prepare_and_enable());
   arm.cycle_and_deliver(ArmRequest::kEnabled, {M_PI / 2});
   EXPECT_EQ(bytes_of(arm.nodes[0]->commands.back()), (Bytes{0x0F, 0x00, 0x90, 0x5F, 0x01, 0x00}));
@@ -242,7 +244,7 @@ TEST(ProcessData, LostPackedDisableIsRepeatedUntilTheBrakeIsOn) {
 
 // In mode 7 the word that lets the axis move changes no state: bit 12 of the statusword tells.
 TEST(ProcessData, LostPackedBitFourIsRepeatedUntilTheDriveInterpolates) {
-  SixAxesOnBus arm(six_axes(Joint::Mode::kInterpolatedPosition, 1, 2));
+  SixAxesOnBus arm(six_axes(DriveMode::kInterpolatedPosition, 1, 2));
   ASSERT_TRUE(arm.prepare());
   int lost = 0;
   const tests::FrameFilter filter(arm.bus, [&](CanFrame& frame, std::size_t) {

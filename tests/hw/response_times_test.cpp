@@ -17,6 +17,7 @@
 #include "hw/arm/canopen_arm.h"
 #include "hw/bus_load/bus_load.h"
 #include "shared/base/error.h"
+#include "shared/canopen/robot_drives.h"
 #include "shared/config/load.h"
 #include "sim/cell/bus/virtual_bus.h"
 #include "tests/hw/gantry_on_bus.h"
@@ -129,7 +130,8 @@ class TimedBench {
   }
 
   void step_nodes() {
-    const bool interpolated = robot_.joints.front().mode == Joint::Mode::kInterpolatedPosition;
+    const bool interpolated =
+        canopen_drive(robot_.joints.front()).mode == DriveMode::kInterpolatedPosition;
     for (const auto& node : nodes_) {
       if (interpolated) node->objects[0x650200].value = 0x43;  // no mode 8
       node->step(bus_.now_ns());

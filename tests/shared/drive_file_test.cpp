@@ -1,15 +1,20 @@
 // Drive profiles as files: what is not by the book, and every way to write one wrongly, refused by
 // file, line, key and range.
 
+#include "shared/config/drive_file.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "shared/canopen/drive_profile.h"
+#include "shared/canopen/robot_drives.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
+#include "tests/shared/slide_robot.h"
 #include "tests/support/places.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
@@ -104,14 +109,33 @@ TEST_F(DriveFile, ADriveThatIsNotThereIsRefusedAtTheJoint) {
 
 TEST_F(DriveFile, ARobotsJointNamesItsDrive) {
   const Robot robot = load_robot(tests::in_tree("hw/robots/lwa4p/robot.yaml"));
-  for (const Joint& joint : robot.joints) EXPECT_EQ(joint.drive.name, "schunk_lwa4p");
+  for (const Joint& joint : robot.joints)
+    EXPECT_EQ(canopen_drive(joint).profile.name, "schunk_lwa4p");
   const Robot book = load_robot(tests::in_tree("hw/robots/csp6/robot.yaml"));
-  for (const Joint& joint : book.joints) EXPECT_EQ(joint.drive, DriveProfile{});
+  for (const Joint& joint : book.joints) EXPECT_EQ(canopen_drive(joint).profile, DriveProfile{});
   const auto files = cell_files(tests::in_tree("hw/cells/lwa4p.yaml"));
   const auto of_drive = std::count_if(files.begin(), files.end(), [](const auto& file) {
     return file.filename() == "schunk_lwa4p.yaml";
   });
   EXPECT_EQ(of_drive, 1);
+}
+
+TEST(DriveOfARobot, HasTheModeOfItsJoint) {
+  const ScratchFolder folder;
+  folder.put("slide.urdf", kSlideUrdf);
+  const Robot robot = load_robot(folder.put("robot.yaml", kSlideRobot));
+  EXPECT_EQ(canopen_drive(robot.joints[0]).mode, DriveMode::kCyclicSynchronousPosition);
+  EXPECT_EQ(canopen_drive(robot.joints[1]).mode, DriveMode::kInterpolatedPosition);
+}
+
+TEST(DriveOfARobot, IsByTheBookUntilSomebodyChangesIt) {
+  Joint joint;
+  EXPECT_EQ(canopen_drive(std::as_const(joint)).profile, DriveProfile{});
+  EXPECT_FALSE(joint.drive.has_value()) << "asking makes nothing";
+  canopen_drive(joint).profile.boot_s = 2.0;
+  const Joint copy = joint;
+  canopen_drive(joint).profile.boot_s = 0.5;
+  EXPECT_EQ(canopen_drive(copy).profile.boot_s, 2.0) << "a copy is of its own";
 }
 
 }  // namespace

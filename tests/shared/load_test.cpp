@@ -234,12 +234,10 @@ TEST(LoadRobot, ReadsEveryValue) {
   EXPECT_EQ(robot.joints[0].name, "x");
   EXPECT_EQ(robot.joints[0].node, 1);
   EXPECT_EQ(robot.joints[0].counts_per_unit, -1e6);
-  EXPECT_EQ(robot.joints[0].mode, Joint::Mode::kCyclicSynchronousPosition);
   EXPECT_EQ(robot.joints[0].rated_effort, 200.0);
   EXPECT_EQ(robot.joints[0].stiffness, 1e6);
   EXPECT_EQ(robot.joints[1].name, "turn");
   EXPECT_EQ(robot.joints[1].node, 2);
-  EXPECT_EQ(robot.joints[1].mode, Joint::Mode::kInterpolatedPosition);
   EXPECT_EQ(robot.joints[1].zero_counts, 100.0);
   EXPECT_EQ(robot.joints[1].acceleration_max, 10.0);
   EXPECT_EQ(robot.joints[1].following_error_max, 0.01);

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "hw/bus_load/bus_load.h"
+#include "shared/canopen/robot_drives.h"
 #include "shared/config/load.h"
 #include "shared/kinematics/serial_chain.h"
 #include "tests/support/allocation_count.h"
@@ -213,7 +214,7 @@ TEST(Lwa4p, HasTheArmsOwnValues) {
     const Joint& joint = robot.joints[i];
     EXPECT_EQ(joint.node, i + 3);
     EXPECT_EQ(joint.kind, Joint::Kind::kRevolute);
-    EXPECT_EQ(joint.mode, Joint::Mode::kInterpolatedPosition);
+    EXPECT_EQ(canopen_drive(joint).mode, DriveMode::kInterpolatedPosition);
     EXPECT_NEAR(joint.counts_per_unit * std::numbers::pi / 2, 90000.0, 1e-9);
     EXPECT_EQ(joint.upper, i == 2 ? 2.714 : 2.967);
     EXPECT_EQ(joint.lower, -joint.upper);
@@ -237,7 +238,7 @@ TEST(Csp6, IsTheLwa4psMechanicsWithPackedTargetsAtTwoMilliseconds) {
   EXPECT_EQ(robot.targets_per_frame, 2);
   ASSERT_EQ(robot.joints.size(), lwa4p.joints.size());
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-    EXPECT_EQ(robot.joints[i].mode, Joint::Mode::kCyclicSynchronousPosition);
+    EXPECT_EQ(canopen_drive(robot.joints[i]).mode, DriveMode::kCyclicSynchronousPosition);
     EXPECT_EQ(robot.joints[i].origin, lwa4p.joints[i].origin);
     EXPECT_EQ(robot.joints[i].lower, lwa4p.joints[i].lower);
     EXPECT_EQ(robot.joints[i].upper, lwa4p.joints[i].upper);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "shared/canopen/robot_drives.h"
 #include "sim/cell/canopen/eds.h"
 #include "sim/cell/devices/robot_devices.h"
 #include "tests/sim/device_bench.h"
@@ -171,7 +172,7 @@ TEST(EdsFilesTest, EveryNodeOfARobotHasOneWithItsOwnDefaults) {
     Joint joint;
     joint.name = "j" + std::to_string(node);
     joint.node = node;
-    joint.mode = Joint::Mode::kInterpolatedPosition;
+    canopen_drive(joint).mode = DriveMode::kInterpolatedPosition;
     joint.counts_per_unit = -1000.0;
     joint.acceleration_max = 2.5;
     joint.effort_max = 30.0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "shared/canopen/robot_drives.h"
 #include "sim/cell/canopen/eds.h"
 #include "sim/cell/devices/drive_402.h"
 #include "sim/cell/devices/force_torque_node.h"
@@ -27,7 +28,7 @@ DriveParameters drive_parameters_of(const Joint& joint) {
   DriveParameters parameters;
   parameters.node = joint.node;
   parameters.name = "tenon virtual drive " + joint.name;
-  parameters.mode = static_cast<std::int8_t>(joint.mode);
+  parameters.mode = static_cast<std::int8_t>(canopen_drive(joint).mode);
   parameters.counts_per_unit = joint.counts_per_unit;
   parameters.quick_stop_counts_ps2 =
       static_cast<std::uint32_t>(std::abs(joint.counts_per_unit) * joint.acceleration_max);
