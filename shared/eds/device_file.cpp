@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "shared/base/text.h"
+#include "shared/eds/eds_text.h"
 #include "shared/eds/ini_file.h"
 
 namespace tenon {
@@ -21,46 +22,16 @@ constexpr unsigned kObjectVariable = 7;
 constexpr unsigned kObjectArray = 8;
 constexpr unsigned kObjectRecord = 9;
 
-std::optional<std::uint64_t> digits(std::string_view text, int base) {
-  std::uint64_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number, base);
-  if (text.empty() || error != std::errc{} || rest != end) return std::nullopt;
-  return number;
-}
-
-/// Decimal, 0x.., or octal with a leading 0, as in C; with a sign. 64 bits as they are.
-std::optional<std::int64_t> parsed_number(std::string_view text) {
-  const bool negative = text.starts_with('-');
-  if (negative || text.starts_with('+')) text.remove_prefix(1);
-  std::optional<std::uint64_t> number;
-  if (text.starts_with("0x") || text.starts_with("0X")) {
-    number = digits(text.substr(2), 16);
-  } else {
-    const bool octal = text.size() > 1 && text.front() == '0' &&
-                       text.find_first_of("89") == std::string_view::npos;
-    number = digits(text, octal ? 8 : 10);
-  }
-  if (!number) return std::nullopt;
-  return static_cast<std::int64_t>(negative ? 0 - *number : *number);
-}
-
-/// "1018" or "1018sub0" of a section's name in small letters.
-std::optional<DeviceObjectId> object_of_section(const std::string& name) {
-  const std::size_t sub_at = name.find("sub");
-  const std::string_view index_text = trimmed(std::string_view(name).substr(0, sub_at));
-  if (index_text.size() != 4) return std::nullopt;
-  const auto index = digits(index_text, 16);
-  if (!index) return std::nullopt;
-  if (sub_at == std::string::npos) return static_cast<DeviceObjectId>(*index << 8);
-  const auto sub = digits(trimmed(std::string_view(name).substr(sub_at + 3)), 16);
-  if (!sub || *sub > 0xFF) return std::nullopt;
-  return static_cast<DeviceObjectId>(*index << 8 | *sub);
-}
+/// What decides about an object: doubles of these may not differ.
+constexpr std::array<std::string_view, 10> kDeciding = {
+    "objecttype", "datatype",  "accesstype", "defaultvalue",  "parametervalue",
+    "lowlimit",   "highlimit", "pdomapping", "compactsubobj", "nodeid"};
 
 class Reader {
  public:
-  Reader(const std::string& name, const std::string& text) : ini_(name, text) { file_.name = name; }
+  Reader(const std::string& name, const std::string& text) : ini_(name, text, kDeciding) {
+    file_.name = name;
+  }
 
   DeviceFile read() {
     read_device();
@@ -83,6 +54,7 @@ class Reader {
   void read_device();
   void read_lists();
   void read_index(std::uint16_t index, const IniSection& section);
+  [[nodiscard]] std::int64_t guessed_kind(std::uint16_t index, const IniSection& section) const;
   void read_subs(std::uint16_t index, const IniSection& section);
   void read_compact(std::uint16_t index, const IniSection& section, std::int64_t count);
   void read_stray_sub(DeviceObjectId id, const IniSection& section);
@@ -98,19 +70,23 @@ class Reader {
   /// A number of a section; unset where it is missing or empty.
   [[nodiscard]] std::optional<std::int64_t> number(const IniSection& section,
                                                    const std::string& key) const;
-  [[nodiscard]] std::int64_t fitted(const DeviceObject& object, std::int64_t value,
-                                    const IniValue& from);
+  /// Unset, and said: the value is none of its type.
+  [[nodiscard]] std::optional<std::int64_t> fitted(const DeviceObject& object,
+                                                   const IniSection& section, const IniValue& from,
+                                                   const std::string& text);
 
   IniFile ini_;
   DeviceFile file_;
+  std::set<DeviceObjectId> described_;  ///< sub-indices whose sections have been seen
 };
 
 std::optional<std::int64_t> Reader::number(const IniSection& section,
                                            const std::string& key) const {
   const IniValue* value = section.find(key);
   if (value == nullptr || value->text.empty()) return std::nullopt;
-  const auto number = parsed_number(value->text);
-  if (!number) {
+  const std::string text = without_comment(value->text);
+  const auto number = parsed_number(text);
+  if (!number && !text.empty()) {
     ini_.refuse(value->line, "[" + section.name + "] " + key + " = " + value->text +
                                  ", must be a number such as 8, 0x6040 or 010");
   }
@@ -129,6 +105,10 @@ void Reader::read_device() {
     const IniSection* section = ini_.find(name);
     const auto node = section == nullptr ? std::nullopt : number(*section, "nodeid");
     if (!node) continue;
+    if (*node == 0) {
+      ini_.slip(section->line, "NodeID = 0 is no node's; taken as not set");
+      continue;
+    }
     if (*node < 1 || *node > 127) {
       ini_.refuse(section->line, "NodeID = " + std::to_string(*node) + ", must be in [1, 127]");
     }
@@ -145,8 +125,8 @@ void Reader::read_lists() {
       continue;
     }
     for (const auto& [key, value] : list->values) {
-      if (key == "supportedobjects" || value.text.empty()) continue;
-      const auto index = parsed_number(value.text);
+      if (!digits(key, 10) || value.text.empty()) continue;
+      const auto index = parsed_number(without_comment(value.text));
       if (!index || *index < 0 || *index > 0xFFFF) {
         ini_.refuse(value.line, "[" + list->name + "] " + key + " = " + value.text +
                                     ", must be an index such as 0x6040");
@@ -161,7 +141,7 @@ void Reader::read_lists() {
 
 void Reader::read_index(std::uint16_t index, const IniSection& section) {
   const auto id = static_cast<DeviceObjectId>(index) << 8;
-  const std::int64_t kind = number(section, "objecttype").value_or(kObjectVariable);
+  const std::int64_t kind = number(section, "objecttype").value_or(guessed_kind(index, section));
   const auto compact = number(section, "compactsubobj");
   if (compact.value_or(0) != 0) {
     if (*compact < 0 || *compact > kSubMax) {
@@ -181,16 +161,28 @@ void Reader::read_index(std::uint16_t index, const IniSection& section) {
   read_object(id, section);
 }
 
+/// Of an index without ObjectType: sub-indices and no type of its own make a record.
+std::int64_t Reader::guessed_kind(std::uint16_t index, const IniSection& section) const {
+  const std::string prefix = sub_prefix(index);
+  const auto next = ini_.sections().lower_bound(prefix);
+  const bool has_subs = next != ini_.sections().end() && next->first.starts_with(prefix);
+  return has_subs && section.find("datatype") == nullptr ? kObjectRecord : kObjectVariable;
+}
+
 void Reader::read_subs(std::uint16_t index, const IniSection& section) {
   const auto announced = number(section, "subnumber");
   std::int64_t found = 0;
-  for (unsigned sub = 0; sub <= 0xFF; ++sub) {
-    const std::string prefix = lower_case(format("%04X", static_cast<unsigned>(index))) + "sub";
-    const IniSection* entry = ini_.find(prefix + lower_case(format("%X", sub)));
-    if (entry == nullptr) entry = ini_.find(prefix + lower_case(format("%02X", sub)));
-    if (entry == nullptr) continue;
-    ++found;
-    read_object(static_cast<DeviceObjectId>(index) << 8 | sub, *entry);
+  const std::string prefix = sub_prefix(index);
+  for (auto entry = ini_.sections().lower_bound(prefix);
+       entry != ini_.sections().end() && entry->first.starts_with(prefix); ++entry) {
+    const auto id = object_of_section(entry->first);
+    if (!id) continue;
+    if (described_.insert(*id).second) {
+      ++found;
+      read_object(*id, entry->second);
+    } else {
+      ini_.slip(entry->second.line, "[" + entry->second.name + "] is described already; ignored");
+    }
   }
   if (!announced) {
     ini_.slip(section.line, "[" + section.name + "] lacks SubNumber; its sections are counted");
@@ -208,12 +200,16 @@ void Reader::read_compact(std::uint16_t index, const IniSection& section, std::i
                             .type = kUnsigned8,
                             .access = DeviceObject::Access::kReadOnly,
                             .line = section.line};
+  // Of a mapping sub-index 0 is what switches it off to be written.
+  const bool mapping = (index >= 0x1600 && index < 0x1800) || (index >= 0x1A00 && index < 0x1C00);
+  if (mapping) read_access(section, count_object);
   count_object.value = count;
   add(id, count_object);
   const IniSection* values =
       ini_.find(lower_case(format("%04X", static_cast<unsigned>(index))) + "value");
   for (std::int64_t sub = 1; sub <= count; ++sub) {
     const auto sub_id = id | static_cast<DeviceObjectId>(sub);
+    described_.insert(sub_id);
     read_object(sub_id, section);
     const auto entry = file_.objects.find(sub_id);
     if (values == nullptr || entry == file_.objects.end()) continue;
@@ -225,7 +221,7 @@ void Reader::read_compact(std::uint16_t index, const IniSection& section, std::i
 }
 
 void Reader::read_stray_sub(DeviceObjectId id, const IniSection& section) {
-  if (file_.objects.contains(id)) return;
+  if (!described_.insert(id).second) return;
   ini_.slip(section.line, "[" + section.name + "] has no section of its index; read all the same");
   read_object(id, section);
 }
@@ -276,7 +272,7 @@ void Reader::read_access(const IniSection& section, DeviceObject& object) {
   if (value == nullptr || value->text.empty()) {
     return ini_.slip(section.line, "[" + section.name + "] lacks AccessType; taken as rw");
   }
-  const std::string word = lower_case(value->text);
+  const std::string word = lower_case(without_comment(value->text));
   const auto found = std::find_if(kWords.begin(), kWords.end(),
                                   [&](const auto& each) { return each.first == word; });
   if (found == kWords.end()) {
@@ -287,31 +283,36 @@ void Reader::read_access(const IniSection& section, DeviceObject& object) {
 }
 
 /// The value that a type's bits hold: FFFFh of an INTEGER16 is -1, and -1 of an UNSIGNED16 FFFFh.
-std::int64_t Reader::fitted(const DeviceObject& object, std::int64_t value, const IniValue& from) {
+std::optional<std::int64_t> Reader::fitted(const DeviceObject& object, const IniSection& section,
+                                           const IniValue& from, const std::string& text) {
+  const auto ignored = [&](const std::string& why) {
+    ini_.slip(from.line,
+              "[" + section.name + "] value = " + from.text + " " + why + "; taken as not given");
+    return std::nullopt;
+  };
+  const auto value = parsed_sum(text);
+  if (!value) return ignored("is no number, nor $NODEID and one");
   const unsigned bits = data_type_bits(object.type);
   if (bits > 62) return value;
   const std::int64_t span = std::int64_t{1} << bits;
-  const bool is_signed = is_signed_type(object.type);
-  const std::int64_t low = is_signed ? -span / 2 : 0;
+  const std::int64_t low = is_signed_type(object.type) ? -span / 2 : 0;
   const std::int64_t high = low + span - 1;
-  if (value >= low && value <= high) return value;
-  const std::int64_t moved = value < low ? value + span : value - span;
-  if (moved < low || moved > high) {
-    ini_.refuse(from.line,
-                from.text + " does not fit the " + std::to_string(bits) + " bits of its data type");
-  }
-  return moved;
+  if (*value >= low && *value <= high) return value;
+  const bool movable = *value >= -span && *value < span;
+  const std::int64_t moved = !movable ? *value : *value < low ? *value + span : *value - span;
+  if (moved >= low && moved <= high) return moved;
+  return ignored("does not fit the " + std::to_string(bits) + " bits of its data type");
 }
 
 std::optional<std::int64_t> Reader::read_limit(const IniSection& section, const std::string& key,
                                                const DeviceObject& object) {
   if (!is_integer_type(object.type)) return std::nullopt;
   const IniValue* value = section.find(key);
-  if (value == nullptr || value->text.empty() ||
-      lower_case(value->text).find("$nodeid") != std::string::npos) {
+  if (value == nullptr || lower_case(value->text).find("$nodeid") != std::string::npos) {
     return std::nullopt;
   }
-  return fitted(object, number(section, key).value(), *value);
+  const std::string text = without_comment(value->text);
+  return text.empty() ? std::nullopt : fitted(object, section, *value, text);
 }
 
 void Reader::read_value(const IniSection& section, DeviceObject& object) {
@@ -322,24 +323,16 @@ void Reader::read_value(const IniSection& section, DeviceObject& object) {
   if (!is_integer_type(object.type)) return;
   // $NODEID, $NODEID+0x180 or 0x180+$NODEID, with spaces and in any case.
   std::string text;
-  for (const char c : lower_case(value->text)) {
+  for (const char c : lower_case(without_comment(value->text))) {
     if (c != ' ' && c != '\t') text += c;
   }
+  if (text.empty()) return;
   constexpr std::string_view kNode = "$nodeid";
   const std::size_t at = text.find(kNode);
-  object.adds_node = at != std::string::npos;
-  if (object.adds_node) {
-    text.erase(at, kNode.size());
-    if (text.starts_with('+')) text.erase(0, 1);
-    if (text.ends_with('+')) text.pop_back();
-    if (text.empty()) text = "0";
-  }
-  const auto parsed = parsed_number(text);
-  if (!parsed) {
-    ini_.refuse(value->line, "[" + section.name + "] value = " + value->text +
-                                 ", must be a number, or $NODEID and one");
-  }
-  object.value = fitted(object, *parsed, *value);
+  const bool adds_node = at != std::string::npos;
+  if (adds_node) text.replace(at, kNode.size(), "0");
+  object.value = fitted(object, section, *value, text);
+  object.adds_node = adds_node && object.value;
 }
 
 void Reader::add(DeviceObjectId id, DeviceObject object) {

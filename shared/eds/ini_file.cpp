@@ -1,5 +1,7 @@
 #include "shared/eds/ini_file.h"
 
+#include <algorithm>
+
 #include "shared/base/error.h"
 #include "shared/base/printable.h"
 
@@ -12,6 +14,19 @@ constexpr std::size_t kShownMax = 60;
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\0' || c == '\v' || c == '\f'; }
 
 std::string shown(std::string_view text) { return shortened(std::string(text), kShownMax); }
+
+/// Names are compared without blanks and without case, an index without its 0x.
+std::string key_of_section(std::string_view name) {
+  std::string key = lower_case(name);
+  std::erase_if(key, is_space);
+  if (key.starts_with("0x")) key.erase(0, 2);
+  return key;
+}
+
+std::string_view unquoted(std::string_view text) {
+  const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
+}
 
 }  // namespace
 
@@ -29,9 +44,14 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-IniFile::IniFile(const std::string& name, const std::string& text) : name_(name) {
+IniFile::IniFile(const std::string& name, const std::string& text,
+                 std::span<const std::string_view> deciding)
+    : name_(name) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::string_view rest = text;
+  if (rest.starts_with("\xFF\xFE") || rest.starts_with("\xFE\xFF")) {
+    refuse(1, "is in UTF-16; save it as plain text (ASCII or UTF-8)");
+  }
   if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
   IniSection* section = nullptr;
   for (int number = 1; !rest.empty(); ++number) {
@@ -48,7 +68,7 @@ IniFile::IniFile(const std::string& name, const std::string& text) : name_(name)
     } else if (section == nullptr) {
       slip(number, "stands before the first section and is ignored: " + shown(line));
     } else {
-      add_value(*section, line, number);
+      add_value(*section, line, number, deciding);
     }
   }
 }
@@ -57,7 +77,7 @@ IniSection* IniFile::open_section(std::string_view line, int number) {
   const std::size_t end = line.find(']');
   if (end == std::string_view::npos) refuse(number, shown(line) + " lacks its ]");
   const std::string name(trimmed(line.substr(1, end - 1)));
-  const auto [found, fresh] = sections_.try_emplace(lower_case(name));
+  const auto [found, fresh] = sections_.try_emplace(key_of_section(name));
   if (fresh) {
     found->second = {name, number, {}};
   } else {
@@ -67,18 +87,23 @@ IniSection* IniFile::open_section(std::string_view line, int number) {
   return &found->second;
 }
 
-void IniFile::add_value(IniSection& section, std::string_view line, int number) {
+void IniFile::add_value(IniSection& section, std::string_view line, int number,
+                        std::span<const std::string_view> deciding) {
   const std::size_t equals = line.find('=');
   if (equals == std::string_view::npos) {
     return slip(number, "is no key=value and is ignored: " + shown(line));
   }
   const std::string key = lower_case(trimmed(line.substr(0, equals)));
-  const std::string text(trimmed(line.substr(equals + 1)));
+  const std::string text(unquoted(trimmed(line.substr(equals + 1))));
   const auto [found, fresh] = section.values.try_emplace(key, IniValue{text, number});
   if (fresh || lower_case(found->second.text) == lower_case(text)) return;
-  refuse(number, "[" + shown(section.name) + "] " + shown(key) + " = " + shown(text) +
-                     " contradicts line " + std::to_string(found->second.line) + ", which says " +
-                     shown(found->second.text) + "; remove one of them");
+  const std::string both = "[" + shown(section.name) + "] " + shown(key) + " = " + shown(text) +
+                           " contradicts line " + std::to_string(found->second.line) +
+                           ", which says " + shown(found->second.text);
+  if (std::find(deciding.begin(), deciding.end(), key) != deciding.end()) {
+    refuse(number, both + "; remove one of them");
+  }
+  slip(number, both + "; the first is taken");
 }
 
 const IniSection* IniFile::find(const std::string& key) const {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,9 +34,12 @@ struct IniSection {
 
 class IniFile {
  public:
-  /// Doubles that agree are read once and listed among the slips; those that contradict each other
-  /// are refused. Throws InputError.
-  IniFile(const std::string& name, const std::string& text);
+  /// Doubles that agree are read once and listed among the slips. Of those that contradict each
+  /// other the first is taken where nothing is decided by the key; else they are refused. Throws
+  /// InputError.
+  /// @param deciding keys in small letters
+  IniFile(const std::string& name, const std::string& text,
+          std::span<const std::string_view> deciding);
 
   [[nodiscard]] const std::map<std::string, IniSection>& sections() const { return sections_; }
   /// @param key in small letters
@@ -49,10 +53,11 @@ class IniFile {
 
  private:
   IniSection* open_section(std::string_view line, int number);
-  void add_value(IniSection& section, std::string_view line, int number);
+  void add_value(IniSection& section, std::string_view line, int number,
+                 std::span<const std::string_view> deciding);
 
   std::string name_;
-  std::map<std::string, IniSection> sections_;  ///< by the name in small letters
+  std::map<std::string, IniSection> sections_;  ///< by the name in small letters, without blanks
   std::vector<std::string> slips_;
 };
 

@@ -84,8 +84,10 @@ TEST(DeviceFile, ReadsTheNodeInEveryForm) {
   const DeviceFile alone = parsed("[2000]\nDataType=5\nAccessType=rw\nDefaultValue=$NODEID\n");
   EXPECT_EQ(object(alone, 0x2000).value, 0);
   EXPECT_TRUE(object(alone, 0x2000).adds_node);
-  EXPECT_EQ(refused("[1800]\nDataType=7\nAccessType=rw\nDefaultValue=$NODEID*2\n"),
-            "a.eds:12: [1800] value = $NODEID*2, must be a number, or $NODEID and one");
+  const DeviceFile sum =
+      parsed("[1800]\nDataType=7\nAccessType=rw\nDefaultValue=0x40000000+0x180+$NODEID\n");
+  EXPECT_EQ(object(sum, 0x1800).value, 0x40000180);
+  EXPECT_TRUE(object(sum, 0x1800).adds_node);
 }
 
 TEST(DeviceFile, TakesHexAndNamesInAnyCase) {
@@ -96,6 +98,29 @@ TEST(DeviceFile, TakesHexAndNamesInAnyCase) {
   EXPECT_TRUE(object(file, 0x60C1, 1).mappable);
 }
 
+TEST(DeviceFile, TakesNamesWithBlanksWithAPrefixAndInQuotes) {
+  const DeviceFile file = parsed(
+      "[0x1018]\nObjectType=9\nSubNumber=1\n[1018 Sub 1]\nParameterName=\"Vendor\"\nDataType=7\n"
+      "AccessType=\"ro\"\n");
+  EXPECT_TRUE(file.slips.empty()) << file.slips.front();
+  EXPECT_EQ(object(file, 0x1018, 1).name, "Vendor");
+  EXPECT_EQ(object(file, 0x1018, 1).access, DeviceObject::Access::kReadOnly);
+}
+
+TEST(DeviceFile, ARecordNeedNotSayThatItIsOne) {
+  const DeviceFile file = parsed("[1018]\nSubNumber=1\n[1018sub1]\nDataType=7\nAccessType=ro\n");
+  EXPECT_TRUE(file.slips.empty()) << file.slips.front();
+  EXPECT_NE(file.find(0x1018, 1), nullptr);
+}
+
+TEST(DeviceFile, ACompactMappingCanBeSwitchedOff) {
+  const DeviceFile file = parsed(
+      "[1600]\nObjectType=9\nDataType=7\nAccessType=rw\nCompactSubObj=2\n"
+      "[1003]\nObjectType=8\nDataType=7\nAccessType=rw\nCompactSubObj=2\n");
+  EXPECT_EQ(object(file, 0x1600, 0).access, DeviceObject::Access::kReadWrite);
+  EXPECT_EQ(object(file, 0x1003, 0).access, DeviceObject::Access::kReadOnly);
+}
+
 TEST(DeviceFile, TakesBitsForWhatTheyAreInTheirType) {
   const DeviceFile file = parsed(
       "[607D]\nDataType=4\nAccessType=rw\nLowLimit=0x80000000\nHighLimit=0x7FFFFFFF\n"
@@ -103,8 +128,42 @@ TEST(DeviceFile, TakesBitsForWhatTheyAreInTheirType) {
   EXPECT_EQ(object(file, 0x607D).low, -2147483648LL);
   EXPECT_EQ(object(file, 0x607D).value, -1);
   EXPECT_EQ(object(file, 0x6072).value, 0xFFFF);
-  EXPECT_EQ(refused("[6072]\nDataType=6\nAccessType=rw\nDefaultValue=0x10000000\n"),
-            "a.eds:12: 0x10000000 does not fit the 16 bits of its data type");
+}
+
+// An object that nobody asks for must not cost its user the whole file.
+TEST(DeviceFile, AValueThatIsNoneOfItsTypeIsNotGivenAndSaid) {
+  struct Case {
+    const char* line;
+    const char* slip;
+  };
+  for (const Case& it :
+       {Case{"DefaultValue=0x10000000",
+             "value = 0x10000000 does not fit the 16 bits of its data type"},
+        Case{"DefaultValue=0.5", "value = 0.5 is no number, nor $NODEID and one"},
+        Case{"DefaultValue=$NODEID*2", "value = $NODEID*2 is no number, nor $NODEID and one"},
+        Case{"HighLimit=n/a", "value = n/a is no number, nor $NODEID and one"},
+        Case{"LowLimit=-70000", "value = -70000 does not fit the 16 bits of its data type"},
+        Case{"LowLimit=-9223372036854775808",
+             "value = -9223372036854775808 does not fit the 16 bits of its data type"}}) {
+    const DeviceFile file =
+        parsed("[6072]\nDataType=6\nAccessType=rw\n" + std::string(it.line) + "\n");
+    EXPECT_FALSE(object(file, 0x6072).value) << it.line;
+    EXPECT_FALSE(object(file, 0x6072).low) << it.line;
+    EXPECT_FALSE(object(file, 0x6072).high) << it.line;
+    EXPECT_FALSE(object(file, 0x6072).adds_node) << it.line;
+    ASSERT_EQ(file.slips.size(), 1u) << it.line;
+    EXPECT_EQ(file.slips[0], "a.eds:12: [6072] " + std::string(it.slip) + "; taken as not given");
+  }
+}
+
+TEST(DeviceFile, TakesACommentBehindAValueForOne) {
+  const DeviceFile file = parsed(
+      "[6072]\nObjectType=0x7 ; VAR\nDataType=0x0006 ; UNSIGNED16\nAccessType=rw ;both ways\n"
+      "DefaultValue=$NODEID+0x180 ; as shipped\nLowLimit=;none\nHighLimit=1000; per mille\n");
+  EXPECT_TRUE(file.slips.empty()) << file.slips.front();
+  EXPECT_EQ(object(file, 0x6072).value, 0x180);
+  EXPECT_EQ(object(file, 0x6072).high, 1000);
+  EXPECT_FALSE(object(file, 0x6072).low);
 }
 
 TEST(DeviceFile, TakesOctalAsItsStandardDoes) {
@@ -140,6 +199,25 @@ TEST(DeviceFile, DoubleSectionsThatAgreeAreOneAndSaid) {
 TEST(DeviceFile, DoublesThatContradictEachOtherAreRefused) {
   EXPECT_EQ(refused("[6064]\nDataType=4\nAccessType=ro\n[6064]\nDataType=7\n"),
             "a.eds:13: [6064] datatype = 7 contradicts line 10, which says 4; remove one of them");
+}
+
+TEST(DeviceFile, OfDoublesThatDecideNothingTheFirstIsTaken) {
+  const DeviceFile file = parsed(
+      "[6064]\nParameterName=Position\nDataType=4\nAccessType=ro\n[6064]\nParameterName=Actual\n");
+  EXPECT_EQ(object(file, 0x6064).name, "Position");
+  ASSERT_EQ(file.slips.size(), 2u);
+  EXPECT_EQ(file.slips[1],
+            "a.eds:14: [6064] parametername = Actual contradicts line 10, which says Position; the "
+            "first is taken");
+}
+
+TEST(DeviceFile, ASubIndexThatIsDescribedTwiceIsReadOnce) {
+  const DeviceFile file = parsed(
+      "[1018]\nObjectType=9\nSubNumber=1\n[1018sub01]\nDataType=7\nAccessType=ro\n"
+      "[1018sub1]\nDataType=5\nAccessType=rw\n");
+  EXPECT_EQ(object(file, 0x1018, 1).type, 7);
+  ASSERT_EQ(file.slips.size(), 1u);
+  EXPECT_EQ(file.slips[0], "a.eds:15: [1018sub1] is described already; ignored");
 }
 
 TEST(DeviceFile, WhatAListNamesAndNobodyDescribesIsMissingAndSaid) {
@@ -180,6 +258,8 @@ TEST(DeviceFile, OtherSlipsAreRefusedByFileAndLine) {
   EXPECT_EQ(refused("[2000]\nDataType=5\nAccessType=both\n"),
             "a.eds:11: [2000] AccessType = both, must be one of ro, wo, rw, rwr, rww, const");
   EXPECT_EQ(refused("[2000\nDataType=5\n"), "a.eds:9: [2000 lacks its ]");
+  EXPECT_EQ(tests::refusal([] { (void)parse_device_file("a.eds", "\xFF\xFE[\0"); }),
+            "a.eds:1: is in UTF-16; save it as plain text (ASCII or UTF-8)");
   EXPECT_EQ(refused(""), "a.eds:1: describes no object; is it an EDS or DCF file?");
 }
 
@@ -196,8 +276,13 @@ TEST(DeviceFile, ADcfHasItsNodeAndItsOwnValues) {
       "ParameterValue=2\n");
   EXPECT_EQ(file.node, 5);
   EXPECT_EQ(object(file, 0x6065).value, 2);
-  EXPECT_EQ(refused("[DeviceCommissioning]\nNodeID=0\n[6065]\nDataType=7\n"),
-            "a.eds:9: NodeID = 0, must be in [1, 127]");
+  EXPECT_EQ(refused("[DeviceCommissioning]\nNodeID=128\n[6065]\nDataType=7\n"),
+            "a.eds:9: NodeID = 128, must be in [1, 127]");
+  const DeviceFile unset =
+      parsed("[DeviceComissioning]\nNodeID=0\n[6065]\nDataType=7\nAccessType=rw\n");
+  EXPECT_FALSE(unset.node);
+  ASSERT_EQ(unset.slips.size(), 1u);
+  EXPECT_EQ(unset.slips[0], "a.eds:9: NodeID = 0 is no node's; taken as not set");
 }
 
 TEST(DeviceFile, TheTwinsOfTheTestsHaveNoSlip) {
