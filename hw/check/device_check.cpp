@@ -1,12 +1,16 @@
 #include "hw/check/device_check.h"
 
 #include <optional>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/drive_settings.h"
 #include "hw/arm/node_settings.h"
 #include "hw/arm/setting_runner.h"
 #include "hw/bus_load/bus_load.h"
+#include "hw/check/object_names.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/canopen/robot_drives.h"
@@ -47,7 +51,8 @@ class Model {
   CheckLine run(const ObjectSetting& setting) {
     CheckLine line{setting, "", Verdict::kGood};
     if (setting.action == Action::kWriteIfOther && same_) {
-      line.device = "is so already, left alone";
+      line.device =
+          absent_ ? "without the object nothing is to be done" : "is so already, left alone";
       comparing_ = false;
       return line;
     }
@@ -77,6 +82,7 @@ class Model {
     line.device = index ? "has no such sub-index" : "has no such object";
     if (line.setting.action == Action::kCompare) {
       remember(line.setting.optional);
+      absent_ = true;
     } else if (line.setting.action == Action::kTry) {
       give_up(line);
     } else if (line.setting.optional) {
@@ -98,6 +104,7 @@ class Model {
     const auto held = value(line.setting, object);
     line.device = describe(object) + (held ? ", holds " + shown(*held) : "");
     remember(held && line.setting.matches(*held));
+    absent_ = false;
   }
 
   void write(CheckLine& line, const DeviceObject& object) {
@@ -190,8 +197,15 @@ class Model {
   std::map<std::uint32_t, std::uint32_t> values_;  ///< that have been written
   bool same_ = false;
   bool comparing_ = false;
+  bool absent_ = false;  ///< what was compared last
   bool gave_up_ = false;
 };
+
+/// Only some of its bits have to be so: "0x192 in bits 0xFFFF".
+std::string wanted_text(const ObjectSetting& setting, const std::string& value) {
+  const std::uint32_t mask = setting.compare_mask & setting.size_mask();
+  return mask == setting.size_mask() ? value : value + " in bits " + shown(mask);
+}
 
 std::string action_text(const ObjectSetting& setting) {
   const std::string value = shown(setting.value & setting.size_mask());
@@ -201,7 +215,7 @@ std::string action_text(const ObjectSetting& setting) {
     case Action::kWriteOrTake:
       return "write " + value + " or take";
     case Action::kExpect:
-      return "expect " + value;
+      return "expect " + wanted_text(setting, value);
     case Action::kTake:
       return "take";
     case Action::kAwait:
@@ -209,7 +223,7 @@ std::string action_text(const ObjectSetting& setting) {
     case Action::kRecord:
       return "record";
     case Action::kCompare:
-      return "compare " + value;
+      return "compare " + wanted_text(setting, value);
     case Action::kWriteIfOther:
       return "write " + value + " if other";
     case Action::kTry:
@@ -218,18 +232,27 @@ std::string action_text(const ObjectSetting& setting) {
   return "";
 }
 
-const char* verdict_text(Verdict verdict) {
-  switch (verdict) {
+const char* verdict_text(const CheckLine& line) {
+  switch (line.verdict) {
     case Verdict::kGood:
       return "good";
     case Verdict::kOther:
-      return "other";
+      return line.setting.action == Action::kTry ? "left out" : "taken";
     case Verdict::kUnknown:
-      return "?";
+      return "unknown";
     case Verdict::kRefused:
       return "REFUSED";
   }
   return "";
+}
+
+std::string line_text(const CheckLine& line) {
+  std::string text =
+      format("  %04Xh:%u  %-24s %-30s %-9s %s", static_cast<unsigned>(line.setting.index),
+             static_cast<unsigned>(line.setting.sub), object_name(line.setting.index).c_str(),
+             action_text(line.setting).c_str(), verdict_text(line), line.device.c_str());
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text + "\n";
 }
 
 struct JointVerdict {
@@ -237,23 +260,43 @@ struct JointVerdict {
   bool stops_at_once = true;  ///< by the one frame for all drives
 };
 
-JointVerdict append_joint(const Robot& robot, std::size_t joint, const DeviceFile* file,
-                          std::string& text) {
-  const Joint& it = robot.joints[joint];
-  text += format("node %u (%s), drive %s, %s\n", static_cast<unsigned>(it.node), it.name.c_str(),
-                 canopen_drive(it).profile.name.c_str(),
-                 file == nullptr ? "no description file" : file->name.c_str());
-  JointVerdict verdict{0, takes_stop(canopen_drive(it).profile)};
-  for (const CheckLine& line : check_joint(robot, joint, file)) {
-    verdict.refused += line.verdict == Verdict::kRefused ? 1 : 0;
-    const bool gives_up = line.setting.action == Action::kTry && line.verdict == Verdict::kOther;
-    if (gives_up) verdict.stops_at_once = false;
-    text += format("  %04Xh:%u  %-26s %-8s %s\n", static_cast<unsigned>(line.setting.index),
-                   static_cast<unsigned>(line.setting.sub), action_text(line.setting).c_str(),
-                   verdict_text(line.verdict), line.device.c_str());
+/// The joints' lines. Of joints with the same drive and file the first has all, the others what is
+/// otherwise or refused: an arm's six drives say the same forty things.
+class JointLines {
+ public:
+  explicit JointLines(const Robot& robot) : robot_(robot) {}
+
+  JointVerdict append(std::size_t joint, const DeviceFile* file, std::string& text) {
+    const Joint& it = robot_.joints[joint];
+    const DriveProfile& drive = canopen_drive(it).profile;
+    const std::string source = file == nullptr ? "no description file" : file->name;
+    const auto [like, first] = told_.try_emplace({drive.name, source});
+    Told& told = like->second;
+    if (first) told.node = it.node;
+    text += format("node %u (%s), drive %s, %s", static_cast<unsigned>(it.node), it.name.c_str(),
+                   drive.name.c_str(), source.c_str());
+    text += first ? "\n" : format(": as node %u, but for\n", static_cast<unsigned>(told.node));
+    JointVerdict verdict{0, takes_stop(drive)};
+    for (const CheckLine& line : check_joint(robot_, joint, file)) {
+      const bool is_refused = line.verdict == Verdict::kRefused;
+      verdict.refused += is_refused ? 1 : 0;
+      const bool gives_up = line.setting.action == Action::kTry && line.verdict == Verdict::kOther;
+      if (gives_up) verdict.stops_at_once = false;
+      const std::string shown = line_text(line);
+      if (first) told.lines.insert(shown);
+      if (first || is_refused || !told.lines.contains(shown)) text += shown;
+    }
+    return verdict;
   }
-  return verdict;
-}
+
+ private:
+  struct Told {
+    std::uint8_t node = 0;
+    std::set<std::string> lines;
+  };
+  const Robot& robot_;
+  std::map<std::pair<std::string, std::string>, Told> told_;  ///< by drive and file
+};
 
 }  // namespace
 
@@ -273,6 +316,9 @@ std::vector<CheckLine> check_joint(const Robot& robot, std::size_t joint, const 
 CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, DeviceFile>& files) {
   check_robot(robot);
   CheckReport report;
+  report.text = format("  %-7s  %-24s %-30s %-9s %s\n", "object", "what it is",
+                       "what bring-up does", "verdict", "what the file says");
+  JointLines lines(robot);
   int refused = 0;
   std::size_t unknown = 0;
   std::string remarks;
@@ -280,7 +326,7 @@ CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, Device
     const auto file = files.find(robot.joints[i].node);
     unknown += file == files.end() ? 1 : 0;
     const DeviceFile* described = file == files.end() ? nullptr : &file->second;
-    const JointVerdict joint = append_joint(robot, i, described, report.text);
+    const JointVerdict joint = lines.append(i, described, report.text);
     refused += joint.refused;
     const SettingNote no_stop{SettingNote::Kind::kNoStop, robot.joints[i].node};
     if (!joint.stops_at_once) remarks += describe(no_stop, robot) + "\n";

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hw/check/object_names.h"
 #include "shared/canopen/robot_drives.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
@@ -125,8 +126,55 @@ TEST(DeviceCheck, WithoutAFileItSaysWhatItWouldDo) {
   const CheckReport report = check_report(robot("csp6"), {});
   EXPECT_TRUE(report.good);
   EXPECT_NE(report.text.find("6 joints without a description file"), std::string::npos);
-  EXPECT_NE(report.text.find("  6007h:0  write 0x3"), std::string::npos) << report.text;
+  EXPECT_NE(report.text.find("  6007h:0  lost-connection option   write 0x3 "), std::string::npos)
+      << report.text;
   EXPECT_NE(report.text.find("bus: "), std::string::npos);
+}
+
+std::size_t times_found(const std::string& text, const std::string& what) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+    ++found;
+  }
+  return found;
+}
+
+// Six drives of a kind say the same; who reads it looks for what is not.
+TEST(DeviceCheck, JointsThatAreAlikeAreToldOnce) {
+  const Robot it = robot("lwa4p");
+  const std::string text = check_report(it, for_all(it, twin("lwa4p"))).text;
+  EXPECT_EQ(times_found(text, "\n  6065h:0 "), 1u) << text;
+  EXPECT_EQ(times_found(text, ": as node 3, but for\n"), 5u);
+  EXPECT_EQ(times_found(text, "\n  1800h:1 "), 12u) << "every node has identifiers of its own";
+  EXPECT_EQ(times_found(text, " \n"), 0u) << "no space ends a line";
+}
+
+TEST(DeviceCheck, WhatIsRefusedIsToldForEveryJoint) {
+  const Robot it = robot("lwa4p");
+  DeviceFile file = twin("lwa4p");
+  file.objects[0x101700].access = DeviceObject::Access::kReadOnly;
+  const std::string text = check_report(it, for_all(it, file)).text;
+  EXPECT_EQ(times_found(text, "REFUSED"), it.joints.size()) << text;
+}
+
+TEST(DeviceCheck, SaysWhichBitsAreExpectedAndWhyNothingIsToBeDone) {
+  const Robot it = robot("epos4");
+  const std::string text = check_report(it, for_all(it, twin("epos4"))).text;
+  EXPECT_NE(text.find("expect 0x192 in bits 0xFFFF"), std::string::npos) << text;
+  EXPECT_NE(text.find("good      without the object nothing is to be done"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("left out  has no such object, brought up without"), std::string::npos);
+}
+
+TEST(DeviceCheck, EveryObjectOfBringUpHasAName) {
+  for (const char* name : {"gantry3", "csp6", "lwa4p", "epos4"}) {
+    for (const CheckLine& line : check_joint(robot(name), 0, nullptr)) {
+      EXPECT_FALSE(object_name(line.setting.index).empty()) << std::hex << line.setting.index;
+    }
+  }
+  EXPECT_EQ(object_name(0x1401), "RPDO 2 identifier, type");
+  EXPECT_EQ(object_name(0x1A03), "TPDO 4 mapping");
+  EXPECT_EQ(object_name(0x2000), "");
 }
 
 TEST(DeviceCheck, AnOverloadedBusIsRefusedWithItsNumbers) {
