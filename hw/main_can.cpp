@@ -12,12 +12,12 @@
 
 #include "hw/can/open_bus.h"
 #include "hw/canopen/heartbeat.h"
+#include "hw/canopen/node_scan.h"
 #include "hw/canopen/object_value.h"
 #include "hw/canopen/sdo.h"
 #include "hw/canopen/sdo_client.h"
 #include "hw/cia402/drive_state.h"
 #include "hw/main_can_check.h"
-#include "shared/base/bytes.h"
 #include "shared/base/error.h"
 #include "shared/canopen/constants.h"
 #include "shared/config/command_line.h"
@@ -28,8 +28,6 @@ namespace {
 
 using canopen::SdoClient;
 
-constexpr std::int64_t kScan_ns = 1'000'000'000;   // after the last request
-constexpr std::int64_t kScanPause_ns = 2'000'000;  // so that no transmit queue overflows
 constexpr std::int64_t kTransferTimeout_ns = 500'000'000;
 constexpr std::int64_t kListen_ns = 1'000'000'000;
 
@@ -78,59 +76,34 @@ int report_failure(const SdoClient& client, const canopen::SdoAddress& address) 
   return 1;
 }
 
-/// Who answered a request of 1000h, and how often.
-struct Answers {
-  std::array<unsigned, 128> count{};
-  std::array<std::uint32_t, 128> device_type{};
-
-  void take(const CanFrame& frame) {
-    const std::uint32_t base = tenon::canopen::kSdoResponse;
-    if (frame.extended || frame.remote || frame.length != 8 || frame.id <= base ||
-        frame.id > base + 127) {
-      return;
-    }
-    const std::uint32_t node = frame.id - base;
-    ++count[node];
-    device_type[node] = load_le<std::uint32_t>(std::span(frame.data).subspan(4));
-  }
-};
-
-void listen(CanBus& bus, std::int64_t until_ns, Answers& answers) {
-  while (monotonic_now_ns() < until_ns) {
+int scan(CanBus& bus) {
+  canopen::NodeScan scan;
+  while (!scan.done(monotonic_now_ns())) {
+    scan.update(monotonic_now_ns(), bus);
     bus.wait(1'000'000);
     ReceivedFrame received;
-    while (bus.receive(received)) answers.take(received.frame);
+    while (bus.receive(received)) scan.process(received.frame);
   }
-}
-
-/// All are asked, then all are heard out, however long each takes.
-int scan(CanBus& bus) {
-  Answers answers;
-  for (unsigned id = 1; id <= 127; ++id) {
-    (void)bus.send(
-        canopen::sdo_upload({static_cast<std::uint8_t>(id), tenon::canopen::kDeviceType, 0}));
-    listen(bus, monotonic_now_ns() + kScanPause_ns, answers);
-  }
-  listen(bus, monotonic_now_ns() + kScan_ns, answers);
-  int found = 0;
-  bool doubled = false;
-  for (unsigned id = 1; id <= 127; ++id) {
-    if (answers.count[id] == 0) continue;
-    ++found;
-    const std::uint32_t type = answers.device_type[id];
-    const auto vendor = read_number(
-        bus, {static_cast<std::uint8_t>(id), tenon::canopen::kIdentity, 1}, kTransferTimeout_ns);
-    std::printf("node %3u  profile %u  device type 0x%08X  vendor 0x%08X\n", id, type & 0xFFFFu,
-                type, vendor.value_or(0));
-    if (answers.count[id] < 2) continue;
-    doubled = true;
+  for (unsigned id = 1; id <= canopen::NodeScan::kNodes; ++id) {
+    const auto node = static_cast<std::uint8_t>(id);
+    const canopen::NodeScan::Found& found = scan.found(node);
+    if (found.answers == 0) continue;
+    const auto vendor = read_number(bus, {node, tenon::canopen::kIdentity, 1}, kTransferTimeout_ns);
+    std::printf("%s\n", canopen::describe(node, found, vendor).c_str());
+    if (found.answers < 2) continue;
     std::fprintf(stderr,
                  "node %u: %u devices answered to one request; give each its own node id (with one "
                  "of them connected at a time)\n",
-                 id, answers.count[id]);
+                 id, found.answers);
   }
-  std::printf("%d node%s\n", found, found == 1 ? "" : "s");
-  return found > 0 && !doubled ? 0 : 1;
+  std::printf("%d node%s\n", scan.count(), scan.count() == 1 ? "" : "s");
+  if (scan.count() == 0) {
+    std::fprintf(stderr,
+                 "nobody answered within %.0f s; check power, wiring and termination, and the bit "
+                 "rate (--bitrate)\n",
+                 1e-9 * canopen::NodeScan::kHearOut_ns);
+  }
+  return scan.count() > 0 && !scan.doubled() ? 0 : 1;
 }
 
 const char* nmt_text(std::uint8_t state) {
@@ -199,7 +172,12 @@ int write(CanBus& bus, const canopen::SdoAddress& address, std::span<const std::
 /// The device keeps its settings from now on (1010h:1, "save").
 int store(CanBus& bus, std::uint8_t node) {
   constexpr std::array<std::uint8_t, 4> kSave = {'s', 'a', 'v', 'e'};
-  return write(bus, {node, tenon::canopen::kStoreParameters, 1}, kSave);
+  const int status = write(bus, {node, tenon::canopen::kStoreParameters, 1}, kSave);
+  if (status == 0) {
+    std::printf("node %u: keeps its settings without power from now on\n",
+                static_cast<unsigned>(node));
+  }
+  return status;
 }
 
 struct Arguments {
