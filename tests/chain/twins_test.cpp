@@ -8,12 +8,15 @@
 #include <cstdio>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/drive_settings.h"
 #include "shared/canopen/robot_drives.h"
 #include "tests/chain/fault_matrix/fault_cell.h"
 #include "tests/chain/fault_matrix/fault_kind.h"
+#include "tests/support/frame_filter.h"
 #include "tests/support/planned.h"
 #include "tests/support/rest_watch.h"
 #include "tests/support/whole_run.h"
@@ -30,12 +33,13 @@ struct Twin {
 
 /// A run of start 1 of the box task, with drives as the file of the cell's name says.
 struct TwinRun {
-  explicit TwinRun(const Twin& twin, bool as_twins = true)
+  explicit TwinRun(const Twin& twin, std::vector<sim::Fault> faults = {})
       : cell(shipped_cell(twin.cell)), planned(planned_box(shipped_cell(twin.plan_of), "1")) {
     WholeRun::Options options;
     options.start = "1";
     options.offset = (Vector6() << 0.01, -0.01, 0.0, 0.0, 0.0, 0.0).finished();
-    if (as_twins) options.twins = twins_of(cell.robot, twin.cell);
+    options.twins = twins_of(cell.robot, twin.cell);
+    options.faults = std::move(faults);
     run = std::make_unique<WholeRun>(cell, planned.task, planned.plan, options);
   }
   [[nodiscard]] std::string fault() const { return hw::describe(run->arm().fault(), cell.robot); }
@@ -88,6 +92,47 @@ TEST_P(TwinPlan, AWarningOfADriveEndsNothing) {
   }
   EXPECT_EQ(twin.run->arm().fault().kind, ArmFaultKind::kNone) << twin.fault();
   EXPECT_GE(twin.run->arm().counters().emergencies, 3u);
+}
+
+// Nothing of its boot is heard for 0.8 s after the master's reset, which falls at 0.3 s.
+TEST_P(TwinPlan, ADriveThatBootsInFourFifthsOfASecondRunsOn) {
+  constexpr double kUp_s = 0.3 + 0.8;
+  const std::uint8_t node = shipped_cell(GetParam().cell).robot.joints[1].node;
+  TwinRun twin(GetParam(),
+               {{.kind = sim::FaultKind::kSilentNode, .node = node, .duration_s = kUp_s},
+                {.kind = sim::FaultKind::kNodeReset, .node = node, .time_s = kUp_s + 0.001}});
+  const WholeRun::Result result = twin.run->run();
+  EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason << twin.fault();
+  EXPECT_TRUE(result.truth.within_tolerance);
+}
+
+// The window that a drive is given arrives as half of it, as one that clamps would take it.
+TEST_P(TwinPlan, ADriveThatClampsItsWindowRunsOn) {
+  TwinRun twin(GetParam());
+  const std::uint8_t node = twin.cell.robot.joints[1].node;
+  std::uint32_t written = 0;
+  const FrameFilter filter(twin.run->bus(), [&](CanFrame& frame, std::size_t) {
+    const bool is_window = frame.id == 0x600u + node && frame.data[0] == 0x23 &&
+                           frame.data[1] == 0x65 && frame.data[2] == 0x60;
+    if (is_window) {
+      written = frame.data[4] | static_cast<std::uint32_t>(frame.data[5]) << 8;
+      frame.data[4] = static_cast<std::uint8_t>(written / 2);
+      frame.data[5] = static_cast<std::uint8_t>(written / 2 >> 8);
+    }
+    return true;
+  });
+  ASSERT_TRUE(twin.run->prepare()) << twin.fault();
+  ASSERT_GT(written, 0u);
+  std::string told;
+  for (const hw::SettingNote& note : twin.run->arm().bring_up().notes()) {
+    if (note.node == node) told += hw::describe(note, twin.cell.robot) + "\n";
+  }
+  EXPECT_NE(told.find("6065h:0 holds"), std::string::npos) << told;
+  while (twin.run->cycle()) {
+  }
+  const WholeRun::Result result = twin.run->result();
+  EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
+  EXPECT_TRUE(result.truth.within_tolerance);
 }
 
 class TwinFaults : public ::testing::TestWithParam<Twin> {};
