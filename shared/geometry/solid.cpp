@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -12,8 +11,6 @@ namespace {
 
 // What single precision leaves of a flat face.
 constexpr double kFlat_rad = 2e-4;
-// Triangles that differ by less are one plane to every purpose.
-constexpr double kOnePlane_rad = 1e-6;
 // So near the surface the way to it has no direction.
 constexpr double kOnSurface_m = 1e-9;
 
@@ -52,8 +49,6 @@ void Solid::find_normals() {
   const std::size_t count = mesh_.triangles.size();
   face_normals_.resize(count);
   edge_normals_.resize(count);
-  faces_.resize(count);
-  std::iota(faces_.begin(), faces_.end(), 0U);
   corner_normals_.assign(mesh_.points_m.size(), Vector3::Zero());
   std::unordered_map<std::uint64_t, std::uint32_t> triangle_of;
   for (std::size_t i = 0; i < count; ++i) {
@@ -71,40 +66,15 @@ void Solid::find_normals() {
       const std::uint32_t from = mesh_.triangles[i][j];
       const std::uint32_t to = mesh_.triangles[i][(j + 1) % 3];
       const Vector3& own = face_normals_[i];
-      const std::uint32_t beyond = triangle_of.at(key_of(to, from));
-      const Vector3& other = face_normals_[beyond];
+      const Vector3& other = face_normals_[triangle_of.at(key_of(to, from))];
       edge_normals_[i][j] = (own + other).normalized();
       const Vector3 along_m = mesh_.points_m[to] - mesh_.points_m[from];
-      if (own.cross(other).norm() < kOnePlane_rad && own.dot(other) > 0.0) {
-        join_faces(static_cast<std::uint32_t>(i), beyond);
-      }
       const double bend = own.cross(other).dot(along_m) / along_m.norm();
       if (from < to && std::atan2(bend, own.dot(other)) > kFlat_rad) {
         convex_edges_.push_back({from, to});
       }
     }
   }
-  for (std::uint32_t i = 0; i < count; ++i) faces_[i] = face_of(i);
-}
-
-std::uint32_t Solid::face_of(std::uint32_t triangle) const {
-  while (faces_[triangle] != triangle) triangle = faces_[triangle];
-  return triangle;
-}
-
-void Solid::join_faces(std::uint32_t triangle, std::uint32_t other) {
-  const std::uint32_t a = face_of(triangle);
-  const std::uint32_t b = face_of(other);
-  faces_[std::max(a, b)] = std::min(a, b);
-}
-
-double Solid::flat_for_m(const Vector3& point_m, const Place& place, double at_most_m) const {
-  if (!place.on_face) return 0.0;
-  const double own_m = std::abs(place.distance_m);
-  const double others_m =
-      tree_.distance_to_others_m(point_m, faces_, faces_[place.triangle], own_m + 2.0 * at_most_m);
-  // Each of the two distances changes by no more than the way.
-  return std::clamp(0.5 * (others_m - own_m), 0.0, at_most_m);
 }
 
 const Vector3& Solid::normal_at(const NearestOnTriangle& nearest) const {
@@ -117,15 +87,31 @@ const Vector3& Solid::normal_at(const NearestOnTriangle& nearest) const {
                                         [part - static_cast<std::size_t>(TrianglePart::kCorner0)]];
 }
 
-Solid::Place Solid::place(const Vector3& point_m, std::uint32_t guess) const {
-  const NearestOnTriangle nearest = tree_.nearest(point_m, guess);
+Solid::Place Solid::place_at(const Vector3& point_m, const NearestOnTriangle& nearest) const {
   const Vector3& normal = normal_at(nearest);
   const Vector3 off_m = point_m - nearest.at_m;
   const double distance_m = std::sqrt(nearest.square_m2);
   const double sign = off_m.dot(normal) >= 0.0 ? 1.0 : -1.0;
   const bool near = distance_m < kOnSurface_m || nearest.part == TrianglePart::kFace;
   return {sign * distance_m, near ? normal : Vector3(sign / distance_m * off_m), nearest.at_m,
-          nearest.triangle, nearest.part == TrianglePart::kFace};
+          nearest.triangle};
+}
+
+Solid::Place Solid::place(const Vector3& point_m, std::uint32_t guess) const {
+  return place_at(point_m, tree_.nearest(point_m, guess));
+}
+
+bool Solid::nearby(const Vector3& point_m, const Place& place, double way_m, std::size_t count_max,
+                   std::vector<std::uint32_t>& triangles) const {
+  // The nearest comes farther away by the way, any other nearer by it; and a little for rounding.
+  constexpr double kRounding = 1.0 + 1e-9;
+  const double radius_m = kRounding * (std::abs(place.distance_m) + 2.0 * way_m);
+  return tree_.within(point_m, radius_m, count_max, triangles);
+}
+
+Solid::Place Solid::place_among(const Vector3& point_m, std::span<const std::uint32_t> triangles,
+                                std::uint32_t guess) const {
+  return place_at(point_m, tree_.nearest_of(point_m, triangles, guess));
 }
 
 }  // namespace tenon

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "shared/geometry/triangle_mesh.h"
@@ -27,19 +28,19 @@ class Solid {
     Vector3 outwards;         ///< the distance's gradient, a unit vector
     Vector3 nearest_m;        ///< on the surface
     std::uint32_t triangle = 0;
-    bool on_face = false;  ///< nearest is the inside of a triangle, no edge or corner
   };
   /// Exact: the closest point of all triangles, the sign by the angle-weighted normal there
   /// (Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal").
   /// @param guess a triangle that is probably near: it only saves time
   [[nodiscard]] Place place(const Vector3& point_m, std::uint32_t guess = 0) const;
 
-  /// The point may move so far, any way, before anything but the plane that it is nearest to now,
-  /// and seen from inside the face, can be nearest; at most `at_most_m`, 0 where it is nearest to
-  /// an edge or a corner.
-  /// @param place as place() has it
-  [[nodiscard]] double flat_for_m(const Vector3& point_m, const Place& place,
-                                  double at_most_m) const;
+  /// All triangles that can be nearest as long as the point moves no farther than this, in
+  /// ascending order. @return false where there are more than `count_max`, and `triangles` is empty
+  [[nodiscard]] bool nearby(const Vector3& point_m, const Place& place, double way_m,
+                            std::size_t count_max, std::vector<std::uint32_t>& triangles) const;
+  /// What place() says, if the nearest triangle is one of these; `guess` is one of them.
+  [[nodiscard]] Place place_among(const Vector3& point_m, std::span<const std::uint32_t> triangles,
+                                  std::uint32_t guess) const;
 
   struct Edge {
     std::uint32_t from = 0;  ///< corners of the mesh
@@ -51,9 +52,7 @@ class Solid {
 
  private:
   void find_normals();
-  /// Triangles on one plane that hang together become one face.
-  void join_faces(std::uint32_t triangle, std::uint32_t other);
-  [[nodiscard]] std::uint32_t face_of(std::uint32_t triangle) const;
+  [[nodiscard]] Place place_at(const Vector3& point_m, const NearestOnTriangle& nearest) const;
   [[nodiscard]] const Vector3& normal_at(const NearestOnTriangle& nearest) const;
 
   Vector3 centre_m_;
@@ -64,7 +63,6 @@ class Solid {
   std::vector<std::array<Vector3, 3>> edge_normals_;
   std::vector<Vector3> corner_normals_;
   std::vector<Edge> convex_edges_;
-  std::vector<std::uint32_t> faces_;  ///< one a triangle
 };
 
 }  // namespace tenon

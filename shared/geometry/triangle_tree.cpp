@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace tenon {
@@ -11,6 +12,7 @@ namespace {
 constexpr std::uint32_t kLeafMax = 4;
 // Halving so many triangles again and again goes no deeper than this.
 constexpr std::size_t kDepthMax = 24;
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 TrianglePart part_of(TrianglePart first, std::size_t index) {
   return static_cast<TrianglePart>(static_cast<std::size_t>(first) + index);
@@ -138,15 +140,30 @@ NearestOnTriangle TriangleTree::nearest(const Vector3& point_m, std::uint32_t gu
   return best;
 }
 
-double TriangleTree::distance_to_others_m(const Vector3& point_m,
-                                          const std::vector<std::uint32_t>& numbers,
-                                          std::uint32_t but, double at_most_m) const {
-  NearestOnTriangle best;
-  best.square_m2 = at_most_m * at_most_m;
-  descend(point_m, best, [&](const Leaf& leaf) {
-    if (numbers[leaf.triangle] != but) leaf.shape.offer(point_m, leaf.triangle, best);
+bool TriangleTree::within(const Vector3& point_m, double radius_m, std::size_t count_max,
+                          std::vector<std::uint32_t>& triangles) const {
+  triangles.clear();
+  NearestOnTriangle reach;
+  reach.square_m2 = radius_m * radius_m;
+  descend(point_m, reach, [&](const Leaf& leaf) {
+    if (triangles.size() > count_max) return;
+    NearestOnTriangle own = reach;
+    own.triangle = kNone;
+    leaf.shape.offer(point_m, leaf.triangle, own);
+    if (own.triangle != kNone) triangles.push_back(leaf.triangle);
   });
-  return std::sqrt(best.square_m2);
+  if (triangles.size() > count_max) triangles.clear();
+  std::sort(triangles.begin(), triangles.end());
+  return !triangles.empty();
+}
+
+NearestOnTriangle TriangleTree::nearest_of(const Vector3& point_m,
+                                           std::span<const std::uint32_t> triangles,
+                                           std::uint32_t guess) const {
+  NearestOnTriangle best;
+  leaves_[place_[guess]].shape.offer(point_m, guess, best);
+  for (const std::uint32_t i : triangles) leaves_[place_[i]].shape.offer(point_m, i, best);
+  return best;
 }
 
 void TriangleTree::near_box(const Eigen::AlignedBox3d& box,

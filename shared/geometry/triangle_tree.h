@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "shared/geometry/triangle_mesh.h"
@@ -59,11 +60,14 @@ class TriangleTree {
   /// @param guess a triangle that is probably near: it only saves time
   [[nodiscard]] NearestOnTriangle nearest(const Vector3& point_m, std::uint32_t guess = 0) const;
 
-  /// The distance to the nearest triangle of those that have another number than `but`.
-  /// @param numbers one a triangle  @param at_most_m what comes out where all others are farther
-  [[nodiscard]] double distance_to_others_m(const Vector3& point_m,
-                                            const std::vector<std::uint32_t>& numbers,
-                                            std::uint32_t but, double at_most_m) const;
+  /// All triangles that are no farther than this from a point, in ascending order.
+  /// @return false where they are more than `count_max`: `triangles` is then empty
+  [[nodiscard]] bool within(const Vector3& point_m, double radius_m, std::size_t count_max,
+                            std::vector<std::uint32_t>& triangles) const;
+  /// As nearest(), of these triangles alone; `guess` is one of them.
+  [[nodiscard]] NearestOnTriangle nearest_of(const Vector3& point_m,
+                                             std::span<const std::uint32_t> triangles,
+                                             std::uint32_t guess) const;
 
   /// Calls `visit` with every triangle whose leaf's box meets `box`, some others included.
   void near_box(const Eigen::AlignedBox3d& box,

@@ -57,7 +57,7 @@ void SurfaceContact::forget() {
   for (Side* side : {&held_, &environment_}) {
     side->near.clear();
     side->complete_until_m = 0.0;
-    for (Side::Point& point : side->points) point.flat_until_m = 0.0;
+    for (Side::Point& point : side->points) point.parts_until_m = 0.0;
   }
 }
 
@@ -68,13 +68,13 @@ const Surface::Place& SurfaceContact::place(Side& side, std::uint32_t index, con
   point.time = time_;
   const Vector3 point_m = point_in(X_SE, side.edges->points_m()[index]);
   Surface::Place& place = point.place;
-  if (moved_m < point.flat_until_m) {
-    place.distance_m = place.outwards.dot(point_m - place.nearest_m);
-    place.nearest_m = point_m - place.distance_m * place.outwards;
+  if (moved_m < point.parts_until_m) {
+    place = side.surface->place_among(point_m, point.parts, place.guess);
     return place;
   }
   place = side.surface->place(point_m, place.guess);
-  point.flat_until_m = moved_m + side.surface->flat_for_m(point_m, place) - kEarly_m;
+  const bool known = side.surface->nearby(point_m, place, kNear_m, point.parts);
+  point.parts_until_m = known ? moved_m + kNear_m : 0.0;
   return place;
 }
 

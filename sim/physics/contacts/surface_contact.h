@@ -43,9 +43,10 @@ class SurfaceContact {
     std::vector<Near> near;
     double complete_until_m = 0.0;  ///< what is not in `near` touches nothing before
     struct Point {
-      Surface::Place place;       ///< in the surface's frame
-      std::uint64_t time = 0;     ///< when it was
-      double flat_until_m = 0.0;  ///< before that only the distance from the plane can have changed
+      Surface::Place place;              ///< in the surface's frame
+      std::uint64_t time = 0;            ///< when it was
+      std::vector<std::uint32_t> parts;  ///< of the surface, that it can be nearest to
+      double parts_until_m = 0.0;        ///< before that
     };
     std::vector<Point> points;  ///< of the edges
   };

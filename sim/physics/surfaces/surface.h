@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "shared/math/pose.h"
@@ -23,16 +24,21 @@ class Surface {
     Vector3 outwards;         ///< the gradient, a unit vector
     Vector3 nearest_m;        ///< on the surface
     std::uint32_t guess = 0;  ///< for a place nearby
-    bool on_face = false;     ///< nearest is the inside of a flat face, by what the kind knows
   };
   /// The same numbers whatever the guess.
   [[nodiscard]] virtual Place place(const Vector3& point_m, std::uint32_t guess) const = 0;
 
-  /// The point may move so far, any way, and its distance is that from the plane through
-  /// `nearest_m` across `outwards`. 0 where that is not known.
-  [[nodiscard]] virtual double flat_for_m(const Vector3& /*point_m*/,
-                                          const Place& /*place*/) const {
-    return 0.0;
+  /// Parts of the surface, by numbers that only the kind knows: all that can be nearest as long as
+  /// the point moves no farther than this. @return false where asking place() is as good
+  [[nodiscard]] virtual bool nearby(const Vector3& /*point_m*/, const Place& /*place*/,
+                                    double /*way_m*/, std::vector<std::uint32_t>& /*parts*/) const {
+    return false;
+  }
+  /// The same numbers as place(), sooner. @param parts of nearby(), the guess among them
+  [[nodiscard]] virtual Place place_among(const Vector3& point_m,
+                                          std::span<const std::uint32_t> /*parts*/,
+                                          std::uint32_t guess) const {
+    return place(point_m, guess);
   }
 
   struct Piece {
