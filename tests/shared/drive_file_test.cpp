@@ -121,9 +121,9 @@ TEST_F(DriveFile, ARobotsJointNamesItsDrive) {
 }
 
 TEST(DriveOfARobot, HasTheModeOfItsJoint) {
-  const ScratchFolder folder;
-  folder.put("slide.urdf", kSlideUrdf);
-  const Robot robot = load_robot(folder.put("robot.yaml", kSlideRobot));
+  const tests::ScratchFolder folder;
+  folder.put("slide.urdf", tests::kSlideUrdf);
+  const Robot robot = load_robot(folder.put("robot.yaml", tests::kSlideRobot));
   EXPECT_EQ(canopen_drive(robot.joints[0]).mode, DriveMode::kCyclicSynchronousPosition);
   EXPECT_EQ(canopen_drive(robot.joints[1]).mode, DriveMode::kInterpolatedPosition);
 }
