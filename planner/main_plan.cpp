@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "planner/cell_fit.h"
+#include "planner/check/task_check.h"
 #include "planner/planner.h"
 #include "planner/report/summary.h"
 #include "shared/base/error.h"
@@ -39,6 +41,7 @@ struct Arguments {
   std::optional<double> time_limit_s;
   double improve_s = 0.0;
   bool verbose = false;
+  bool check = false;
 };
 
 void describe(CLI::App& app, Arguments& a) {
@@ -66,7 +69,9 @@ void describe(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(planner::kDrawsMin, planner::kDrawsMax))
       ->capture_default_str();
   app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
-  app.add_option("-o,--output", a.output, "Plan file to write")->required();
+  app.add_option("-o,--output", a.output, "Plan file to write; required but for --check");
+  app.add_flag("--check", a.check,
+               "Plan nothing: say what of the task is understood, and what is wrong with it");
   app.add_option("--json", a.json, "File for the statistics, - for standard output");
 }
 
@@ -80,7 +85,7 @@ const Start& chosen_start(const Task& task, const std::string& name) {
   if (name.empty() && !task.starts.empty()) return task.starts.front();
   if (const Start* start = find_start(task, name)) return *start;
   throw InputError("--start " + name + ": task '" + task.name + "' has only the starts " +
-                   start_names(task));
+                   start_names(task) + start_meant(task, name));
 }
 
 /// Writes every plan as it comes, so that who stops the program has the best one so far.
@@ -95,8 +100,25 @@ void write_each(const Arguments& a, planner::PlannerOptions& options,
   };
 }
 
+/// Looks at the start that is named, else at all.
+int check(const Arguments& a, const Task& task) {
+  const std::vector<Start> starts =
+      a.start.empty() ? task.starts : std::vector<Start>{chosen_start(task, a.start)};
+  const planner::TaskCheck checked =
+      planner::check_task(task, starts, [](const Task& part) -> std::unique_ptr<Rollout> {
+        return std::make_unique<sim::OdeRollout>(part);
+      });
+  std::fputs(planner::check_text(a.task, task, checked).c_str(), stdout);
+  return checked.refused() ? 2 : 0;
+}
+
 int run(const Arguments& a) {
   Task task = load_task(a.task);
+  if (a.check) {
+    if (!a.cell.empty()) task = planner::fit_to_cell(task, load_cell(a.cell)).task;
+    return check(a, task);
+  }
+  if (a.output.empty()) throw InputError("--output is required; see --help");
   if (a.time_limit_s) {
     if (!(*a.time_limit_s > 0.0 && *a.time_limit_s <= 86400.0)) {
       throw InputError(format("--time-limit = %g, must be in (0, 86400] s", *a.time_limit_s));

@@ -5,7 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "shared/base/did_you_mean.h"
 #include "shared/base/error.h"
 #include "shared/config/signals.h"
 
@@ -14,12 +18,38 @@ namespace tenon {
 /// --help or --version has been answered.
 struct CommandLineAnswered {};
 
+/// "--threads", "-o" of a program, and of its subcommands.
+inline std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (const CLI::App* sub : app.get_subcommands(nullptr)) {
+    const std::vector<std::string> more = option_names(*sub);
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  return names;
+}
+
+/// The line for bad usage. A name that is not known comes before what is missing: who misspells a
+/// required option has given it.
+inline std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> names = option_names(app);
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  for (const std::string& word : app.remaining(true)) {
+    if (!word.starts_with("--")) continue;
+    const std::string meant = did_you_mean(word.substr(0, word.find('=')), known);
+    if (!meant.empty()) return word + ": is an unknown option" + meant + " See --help";
+  }
+  return std::string(error.what()) + "; see --help";
+}
+
 /// @throws InputError for bad usage, CommandLineAnswered after --help or --version
 inline void parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) throw InputError(std::string(error.what()) + "; see --help");
+    if (error.get_exit_code() != 0) throw InputError(usage_error(app, error));
     static_cast<void>(app.exit(error));
     throw CommandLineAnswered{};
   }

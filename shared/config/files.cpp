@@ -3,10 +3,16 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
+#include "shared/base/did_you_mean.h"
 #include "shared/base/error.h"
 #include "shared/config/load.h"
 #include "shared/system/descriptor.h"
@@ -17,8 +23,25 @@ namespace {
 
 constexpr std::size_t kFileMax_bytes = 16U << 20U;
 
+/// A file beside the one that is not there; nothing where none has a name like its.
+std::string file_meant(const std::filesystem::path& file) {
+  constexpr int kFilesMax = 1000;
+  std::error_code error;
+  std::vector<std::string> names;
+  std::filesystem::path folder = file.parent_path();
+  if (folder.empty()) folder = ".";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.is_regular_file(error)) names.push_back(entry.path().filename().string());
+    if (names.size() >= kFilesMax) break;
+  }
+  std::sort(names.begin(), names.end());
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  return did_you_mean(file.filename().string(), known);
+}
+
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what, int error) {
-  throw InputError(file.string() + ": cannot be " + what + ": " + std::strerror(error));
+  throw InputError(file.string() + ": cannot be " + what + ": " + std::strerror(error) +
+                   (error == ENOENT ? file_meant(file) : ""));
 }
 
 /// The input was good, the disk took no more of what came of it.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "shared/config/drive_file.h"
+#include "shared/config/file_kind.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/yaml_value.h"
@@ -46,10 +47,11 @@ void append_drive_files(const std::filesystem::path& robot_file,
 }  // namespace
 
 Cell load_cell(const std::filesystem::path& file) {
-  const Map map(Value::parse(file, config::read_file(file)),
-                {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange",
-                 "sensor_in_flange", "payload", "contact_stiffness_Npm", "contact_stiffness_Nmpr",
-                 "sensor_bias", "faults", "on_brake_failure"});
+  const Value document = Value::parse(file, config::read_file(file));
+  config::expect_kind(file, document, config::FileKind::kCell);
+  const Map map(document, {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange",
+                           "sensor_in_flange", "payload", "contact_stiffness_Npm",
+                           "contact_stiffness_Nmpr", "sensor_bias", "faults", "on_brake_failure"});
   Cell cell;
   cell.name = map.at("name").name();
   if (const auto up = map.find("up_in_base")) {

@@ -11,6 +11,7 @@
 #include "shared/canopen/constants.h"
 #include "shared/canopen/drive_profile.h"
 #include "shared/config/drive_file.h"
+#include "shared/config/file_kind.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/yaml_value.h"
@@ -165,8 +166,9 @@ void read_pdos(const Value& value, DriveProfile& profile) {
 }  // namespace
 
 DriveProfile load_drive(const std::filesystem::path& file) {
-  const Map map(Value::parse(file, config::read_file(file)),
-                {"name", "objects", "extra", "pdos", "modes", "boot_s", "warnings"});
+  const Value document = Value::parse(file, config::read_file(file));
+  config::expect_kind(file, document, config::FileKind::kDrive);
+  const Map map(document, {"name", "objects", "extra", "pdos", "modes", "boot_s", "warnings"});
   DriveProfile profile;
   profile.name = map.at("name").name();
   if (const auto objects = map.find("objects")) read_objects(*objects, profile);

@@ -1,3 +1,4 @@
+#include "shared/config/file_kind.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/yaml_value.h"
@@ -30,26 +31,28 @@ Spread read_error(const Value& value, double magnitude) {
 }  // namespace
 
 WorldRanges load_experiment(const std::filesystem::path& file) {
-  const Map map(Value::parse(file, config::read_file(file)), {"name",
-                                                              "friction",
-                                                              "contact_stiffness_Npm",
-                                                              "clearance_m",
-                                                              "size_error_m",
-                                                              "task_in_base_error_m",
-                                                              "task_in_base_error_rad",
-                                                              "tool_in_flange_error_m",
-                                                              "tool_in_flange_error_rad",
-                                                              "sensor_in_flange_error_m",
-                                                              "sensor_in_flange_error_rad",
-                                                              "payload_mass_error_kg",
-                                                              "payload_com_error_m",
-                                                              "servo_stiffness_factor",
-                                                              "extra_delay_s",
-                                                              "backlash_m",
-                                                              "backlash_rad",
-                                                              "sensor_noise_factor",
-                                                              "force_drift_N_sqrts",
-                                                              "torque_drift_Nm_sqrts"});
+  const Value document = Value::parse(file, config::read_file(file));
+  config::expect_kind(file, document, config::FileKind::kExperiment);
+  const Map map(document, {"name",
+                           "friction",
+                           "contact_stiffness_Npm",
+                           "clearance_m",
+                           "size_error_m",
+                           "task_in_base_error_m",
+                           "task_in_base_error_rad",
+                           "tool_in_flange_error_m",
+                           "tool_in_flange_error_rad",
+                           "sensor_in_flange_error_m",
+                           "sensor_in_flange_error_rad",
+                           "payload_mass_error_kg",
+                           "payload_com_error_m",
+                           "servo_stiffness_factor",
+                           "extra_delay_s",
+                           "backlash_m",
+                           "backlash_rad",
+                           "sensor_noise_factor",
+                           "force_drift_N_sqrts",
+                           "torque_drift_Nm_sqrts"});
   const auto range = [&map](std::string_view key, const Bounds& bounds, auto& spread) {
     if (const auto value = map.find(key)) spread = read_range(*value, bounds);
   };

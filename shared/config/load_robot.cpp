@@ -12,6 +12,7 @@
 #include "shared/canopen/drive_profile.h"
 #include "shared/canopen/robot_drives.h"
 #include "shared/config/drive_file.h"
+#include "shared/config/file_kind.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/urdf_chain.h"
@@ -181,8 +182,9 @@ double read_response_lag_s(const Value& value, const Robot& robot) {
 }  // namespace
 
 Robot load_robot(const std::filesystem::path& file) {
-  const Map map(Value::parse(file, config::read_file(file)),
-                {"name", "urdf", "bus", "arm", "joints", "sensor"});
+  const Value document = Value::parse(file, config::read_file(file));
+  config::expect_kind(file, document, config::FileKind::kRobot);
+  const Map map(document, {"name", "urdf", "bus", "arm", "joints", "sensor"});
   Robot robot;
   robot.name = map.at("name").name();
   const std::string urdf = map.at("urdf").text();

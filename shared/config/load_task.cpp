@@ -4,6 +4,7 @@
 
 #include "shared/base/fnv.h"
 #include "shared/base/text.h"
+#include "shared/config/file_kind.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/load_shapes.h"
@@ -236,6 +237,7 @@ Task load_task(const std::filesystem::path& name) {
   const auto [file, variant] = config::split_variant(name);
   const std::string text = config::read_file(file);
   const Value document = Value::parse(file, text);
+  config::expect_kind(file, document, config::FileKind::kTask);
   const Map map(
       variant ? config::with_variant(document, *variant) : document,
       {"name", "coordinates", "held", "environment", "starts", "error_about_m", "particle_sigmas",

@@ -1,6 +1,10 @@
 #include "shared/config/variant.h"
 
+#include <string_view>
 #include <system_error>
+#include <vector>
+
+#include "shared/base/did_you_mean.h"
 
 namespace tenon::config {
 namespace {
@@ -27,9 +31,12 @@ Value with_variant(const Value& document, const std::string& variant) {
   if (!variants) document.refuse("has no variant '" + variant + "', nor any other");
   const std::optional<Value> chosen = variants->peek(variant);
   if (!chosen) {
+    const std::vector<std::string> known = variants->keys();
     std::string names;
-    for (const std::string& name : variants->keys()) names += (names.empty() ? "" : ", ") + name;
-    variants->refuse("has no '" + variant + "', there are: " + names);
+    for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+    const std::vector<std::string_view> views(known.begin(), known.end());
+    variants->refuse("has no '" + variant + "', there are: " + names +
+                     did_you_mean(variant, views));
   }
   if (const auto nested = chosen->peek(kVariants)) nested->refuse("a variant has none itself");
   return document.overlaid_with(*chosen);

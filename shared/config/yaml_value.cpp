@@ -4,11 +4,15 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <utility>
 
+#include "shared/base/did_you_mean.h"
 #include "shared/base/error.h"
 #include "shared/base/printable.h"
 #include "shared/base/text.h"
+#include "shared/config/file_kind.h"
+#include "shared/config/value_hints.h"
 #include "shared/config/yaml_documents.h"
 
 namespace tenon::config {
@@ -53,6 +57,7 @@ Value::Value(std::shared_ptr<const std::string> file, std::string path, const YA
 
 Value Value::parse(const std::filesystem::path& file, const std::string& text) {
   auto name = std::make_shared<const std::string>(file.string());
+  expect_no_plan(file, text);
   try {
     const int documents = yaml_documents(text);
     if (documents != 1) {
@@ -62,7 +67,7 @@ Value Value::parse(const std::filesystem::path& file, const std::string& text) {
     return {name, "", YAML::Load(text)};
   } catch (const YAML::Exception& error) {
     throw InputError(*name + ":" + std::to_string(error.mark.line + 1) +
-                     ": is not YAML: " + error.msg);
+                     ": is not YAML: " + error.msg + tab_hint(text, error.mark.line));
   }
 }
 
@@ -93,8 +98,10 @@ double Value::number(const Bounds& bounds) const {
   const std::string& text = scalar(must_be);
   constexpr const char* kQuoted = "!";
   const std::optional<double> number = parsed<double>(text);
-  if (!number || node_.Tag() == kQuoted) refuse_value(must_be);
-  if (!std::isfinite(*number) || !bounds.holds(*number)) refuse_value("in " + to_string(bounds));
+  if (!number || node_.Tag() == kQuoted) refuse_value(must_be + writing_hint(text));
+  if (!std::isfinite(*number) || !bounds.holds(*number)) {
+    refuse_value("in " + to_string(bounds) + unit_hint(path_, *number, bounds));
+  }
   return *number;
 }
 
@@ -124,7 +131,7 @@ std::string Value::text() const {
 std::size_t Value::choice(const std::vector<std::string_view>& words) const {
   const std::string must_be = "one of: " + joined(words);
   const auto found = std::find(words.begin(), words.end(), scalar(must_be));
-  if (found == words.end()) refuse_value(must_be);
+  if (found == words.end()) refuse_value(must_be + did_you_mean(node_.Scalar(), words));
   return static_cast<std::size_t>(found - words.begin());
 }
 
@@ -240,7 +247,9 @@ Map::Map(const Value& value, std::initializer_list<std::string_view> keys) : val
   entries_ = value.entries();
   for (const Value::Entry& entry : entries_) {
     if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
-    entry.key_value.refuse("is an unknown key, known here: " + joined(keys));
+    const std::span<const std::string_view> known(keys.begin(), keys.size());
+    entry.key_value.refuse("is an unknown key, known here: " + joined(keys) +
+                           did_you_mean(entry.key, known) + key_hint(entry.key));
   }
 }
 

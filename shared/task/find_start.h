@@ -18,4 +18,7 @@ namespace tenon {
 /// "1, 2, 7": the names of all, for a message.
 [[nodiscard]] std::string start_names(const Task& task);
 
+/// "; did you mean above?" for a name that no start has, or nothing; see did_you_mean().
+[[nodiscard]] std::string start_meant(const Task& task, std::string_view name);
+
 }  // namespace tenon

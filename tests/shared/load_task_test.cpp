@@ -136,17 +136,18 @@ TEST(TaskVariant, RefusesEachBadLineWithItsPlace) {
       {"w1: 3", "w1: 3", "#", ":17: variants: has no '', there are: fine, tight"},
       {"variants:", "search:", "#fine", ":1: has no variant 'fine', nor any other"},
       {"tolerance_m: 0.002", "tolerance_m: 2", "#fine",
-       ":18: variants.fine.goal.tolerance_m = 2, must be in (0, 1]"},
+       ":18: variants.fine.goal.tolerance_m = 2, must be in (0, 1]; is it in mm? then write 0.002 "
+       "m"},
       {"tolerance_m: 0.01", "tolerance_m: 2", "#tight",
-       ":10: goal.tolerance_m = 2, must be in (0, 1]"},
+       ":10: goal.tolerance_m = 2, must be in (0, 1]; is it in mm? then write 0.002 m"},
       {"{tolerance_m: 0.002}", "{tolerance: 2}", "#fine",
        ":18: variants.fine.goal.tolerance: is an unknown key, known here: pose, tolerance_m, "
-       "uncertainty_m2, inserted"},
+       "uncertainty_m2, inserted; did you mean tolerance_m?"},
       {"    search: {w1: 3}", "    serach: {w1: 3}", "#fine",
        ":20: variants.fine.serach: is an unknown key, known here: name, coordinates, held, "
        "environment, starts, error_about_m, particle_sigmas, goal, primitives, speeds, contact, "
        "compliance, "
-       "search, physics, variants"},
+       "search, physics, variants; did you mean search?"},
       {"{w1: 3}", "{w1: 3, w1: 4}", "#fine", ":20: variants.fine.search.w1: is given twice"},
       {"sigma_m: [0.001, 0.002]", "sigma_m: [0.001]", "#fine",
        ":19: variants.fine.starts[0].sigma_m: has 1 entries, must have 2"},

@@ -158,7 +158,8 @@ TEST(LoadTask, RefusesEachBadNameAndShapeWithItsPlace) {
        "ring: {inner_diameter_m: i, outer_diameter_m: o, length_m: l}, "
        "extrusion: {profile_m: [[x, y], ...], length_m: l}, mesh: {file: f, scale: s}"},
       {"length_m: 0.1", "length: 0.1",
-       ":4: held[0].cylinder.length: is an unknown key, known here: diameter_m, length_m"},
+       ":4: held[0].cylinder.length: is an unknown key, known here: diameter_m, length_m; did "
+       "you mean length_m?"},
       {"length_m: 0.1", "length_m: 0.1, diameter_m: 1",
        ":4: held[0].cylinder.diameter_m: is given twice"},
       {"name: tiny\n", "name: tiny\ncolour: red\n",
@@ -180,7 +181,7 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
       {"tolerance_m: 0.002", "tolerance_m: two",
        ":10: goal.tolerance_m = two, must be a number in (0, 1]"},
       {"tolerance_m: 0.002", "tolerance_m: \"0.002\"",
-       ":10: goal.tolerance_m = 0.002, must be a number in (0, 1]"},
+       ":10: goal.tolerance_m = 0.002, must be a number in (0, 1]; leave the quotes out"},
       {"tolerance_m: 0.002",
        "tolerance_m:", ":10: goal.tolerance_m is empty, must be a number in (0, 1]"},
       {"pose: {position_m: [0.2, 0, 0]}, ", "", ":10: goal: the required key pose is missing"},

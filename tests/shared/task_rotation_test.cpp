@@ -63,8 +63,10 @@ TEST(TaskRotation, AnErrorTurnsAboutTheOriginUnlessAPointIsNamed) {
   const ScratchFolder folder;
   const auto file =
       folder.put("far.yaml", with("x, y, rz", "x, y, rz", "", "error_about_m: [500, 0, 0]\n"));
-  EXPECT_EQ(tests::refusal([&] { (void)load_task(file); }),
-            file.string() + ":14: error_about_m[0] = 500, must be in [-100, 100]");
+  EXPECT_EQ(
+      tests::refusal([&] { (void)load_task(file); }),
+      file.string() +
+          ":14: error_about_m[0] = 500, must be in [-100, 100]; is it in mm? then write 0.5 m");
 }
 
 // An angle weighs 0.1 m a rad unless the task says otherwise: 2 mm are 20 mrad.

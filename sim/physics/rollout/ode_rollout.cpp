@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "shared/ports/collision_depth.h"
 #include "sim/physics/contacts/contact_law.h"
 #include "sim/physics/rollout/compliant_tool.h"
 #include "sim/physics/scene.h"
@@ -15,8 +16,6 @@ namespace {
 
 // A part this deep inside another has gone through it; the force limit alone presses far less.
 constexpr double kTunnelled_m = 5e-3;
-// Overlaps below this are resting contacts.
-constexpr double kCollision_m = 1e-4;
 constexpr std::int64_t kMicrosecond_ns = 1000;
 constexpr double kMicrosecond_s = 1e-6;
 
@@ -191,7 +190,7 @@ bool OdeRollout::in_collision(const Pose& tool_pose) {
   physics_->tool.place(tool_pose);
   physics_->scene.place_environment({});
   physics_->scene.set_oversize(task_.oversize_m);
-  return physics_->scene.overlap_m() > kCollision_m;
+  return physics_->scene.overlap_m() > kCollisionDepth_m;
 }
 
 std::unique_ptr<Rollout> OdeRollout::clone() const { return std::make_unique<OdeRollout>(task_); }

@@ -1,0 +1,175 @@
+#include "planner/check/task_check.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "planner/belief/belief.h"
+#include "planner/check/sizes.h"
+#include "shared/base/shown.h"
+#include "shared/base/text.h"
+#include "shared/task/inserted.h"
+
+namespace tenon::planner {
+namespace {
+
+using Weight = Finding::Weight;
+
+std::string at(const Vector3& p) { return format("(%.4g, %.4g, %.4g) m", p.x(), p.y(), p.z()); }
+
+const char* sign_text(int sign) { return sign > 0 ? "+" : "-"; }
+
+/// "peg stands 45 mm deep in bottom (free by +z)"
+std::string overlap_text(const Overlap& overlap, const Task& task) {
+  std::string text =
+      overlap.held + format(" stands %.3g mm deep in ", 1e3 * overlap.depth_m) +
+      overlap.environment +
+      format(" (the shortest way out is %s%s)", sign_text(overlap.sign), axis_name(overlap.axis));
+  if (task.oversize_m > 0.0) {
+    text += format(", with a part %g mm larger than drawn (oversize_m)", 1e3 * task.oversize_m);
+  }
+  return text;
+}
+
+class Checker {
+ public:
+  Checker(const Task& task, const MakeRollout& make) : task_(task), probe_(task, make) {}
+
+  void sizes() {
+    for (Finding& finding : doubtful_sizes(task_)) {
+      check_.findings.push_back(std::move(finding));
+    }
+  }
+
+  void goal() {
+    const auto overlap = probe_.deepest(task_.goal);
+    if (overlap) {
+      add(Weight::kRefused,
+          "the goal at " + at(task_.goal.position_m) +
+              " is in collision: " + overlap_text(*overlap, task_) +
+              ": shapes are placed by their middle; move the goal or one of them");
+      return;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!has(task_.coordinates, axis)) continue;
+      const double reach_m = push_reach_m(task_);
+      check_.goal_room.push_back({axis, probe_.way_to_touch(task_.goal, axis, -1, reach_m),
+                                  probe_.way_to_touch(task_.goal, axis, 1, reach_m)});
+    }
+    const bool alone = std::all_of(check_.goal_room.begin(), check_.goal_room.end(),
+                                   [](const GoalRoom& room) { return !room.down_m && !room.up_m; });
+    if (alone) {
+      add(Weight::kDoubt, "at the goal at " + at(task_.goal.position_m) +
+                              " nothing is near: no push from it, along any coordinate, touches "
+                              "the environment");
+    }
+  }
+
+  void start(const Start& start) {
+    const std::string what = "start '" + start.name + "' at " + at(start.pose.position_m);
+    if (const auto overlap = probe_.deepest(start.pose)) {
+      add(Weight::kRefused, what + " is in collision: " + overlap_text(*overlap, task_) +
+                                ": move the start or the environment");
+      return;
+    }
+    const Belief belief = cross_polytope(task_, start);
+    const bool free = particles(start, belief, what);
+    const bool arrived =
+        std::all_of(belief.particles.begin(), belief.particles.end(),
+                    [&](const Particle& p) { return within_tolerance(task_, p.tool()); });
+    if (arrived && !belief.particles.empty()) {
+      add(Weight::kDoubt, what +
+                              " is already within the goal's tolerance, wherever in its spread "
+                              "the part is: nothing is left to plan");
+    }
+    StartCheck& checked = check_.starts.emplace_back();
+    checked.name = start.name;
+    checked.particles = belief.particles.size();
+    if (!free) return;
+    checked.touches = touchable(task_, start, probe_);
+    untouched(start, checked.touches);
+  }
+
+  [[nodiscard]] TaskCheck take() {
+    std::stable_sort(check_.findings.begin(), check_.findings.end(),
+                     [](const Finding& a, const Finding& b) { return a.weight < b.weight; });
+    // Where the sizes are wrong, all that collides does so for that.
+    const std::vector<Finding> sizes = doubtful_sizes(task_);
+    for (auto size = sizes.rbegin(); size != sizes.rend(); ++size) {
+      const auto found =
+          std::find_if(check_.findings.begin(), check_.findings.end(),
+                       [&](const Finding& finding) { return finding.text == size->text; });
+      std::rotate(check_.findings.begin(), found, std::next(found));
+    }
+    return std::move(check_);
+  }
+
+ private:
+  void add(Weight weight, std::string text) {
+    check_.findings.push_back({weight, std::move(text)});
+  }
+
+  /// Whether all of them stand free. The first that does not is told of.
+  bool particles(const Start& start, const Belief& belief, const std::string& what) {
+    for (const Particle& particle : belief.particles) {
+      const Pose tool = particle.tool();
+      if (probe_.free(tool)) continue;
+      const Vector6 off = displacement_between(start.pose, tool);
+      int axis = 0;
+      off.cwiseAbs().maxCoeff(&axis);
+      const int sign = off[axis] < 0.0 ? -1 : 1;
+      std::string text = what + format(" is free, but %g standard deviations out along %s%s",
+                                       task_.particle_sigmas, sign_text(sign), axis_name(axis));
+      const auto way_m = axis < 3 ? probe_.way_to_touch(start.pose, axis, sign, std::abs(off[axis]))
+                                  : std::nullopt;
+      if (way_m) {
+        text += format(" the part would be %.3g mm inside ", 1e3 * (std::abs(off[axis]) - *way_m)) +
+                probe_.met_at(tool) +
+                format(": move the start, or lower its sigma there from %g to %.3g m",
+                       start.sigma[axis], *way_m / task_.particle_sigmas);
+      } else {
+        text += " the part stands in " + probe_.met_at(tool) +
+                ": move the start or lower its sigma there";
+      }
+      add(Weight::kRefused, text);
+      return false;
+    }
+    return true;
+  }
+
+  void untouched(const Start& start, const std::vector<Touch>& touches) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool uncertain = task_.particle_sigmas * start.sigma[axis] > task_.goal_tolerance_m;
+      const bool touched = std::any_of(touches.begin(), touches.end(),
+                                       [axis](const Touch& touch) { return touch.axis == axis; });
+      if (!has(task_.coordinates, axis) || !uncertain || touched) continue;
+      add(Weight::kDoubt,
+          "start '" + start.name + "' has nothing to touch along " + axis_name(axis) +
+              format(" within %.3g m: only a contact tells where the part is along it. It takes a "
+                     "face across %s, wider than the start's spread, or a smaller sigma there than "
+                     "%g m",
+                     push_reach_m(task_), axis_name(axis), start.sigma[axis]));
+    }
+  }
+
+  const Task& task_;
+  Probe probe_;
+  TaskCheck check_;
+};
+
+}  // namespace
+
+bool TaskCheck::refused() const {
+  return std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.weight == Finding::Weight::kRefused;
+  });
+}
+
+TaskCheck check_task(const Task& task, const std::vector<Start>& starts, const MakeRollout& make) {
+  Checker checker(task, make);
+  checker.sizes();
+  checker.goal();
+  for (const Start& start : starts) checker.start(start);
+  return checker.take();
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,22 @@
+#pragma once
+// Which kind of file somebody has given where another was asked for. Offline.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "shared/config/yaml_value.h"
+
+namespace tenon::config {
+
+enum class FileKind : std::uint8_t { kTask, kCell, kRobot, kDrive, kExperiment };
+
+/// Refuses a document that has the keys of another kind and none of its own: "FILE: is a cell file,
+/// not a task file; a cell file goes with --cell". Of any other it says nothing: the loader names
+/// what is missing. @throws InputError
+void expect_kind(const std::filesystem::path& file, const Value& document, FileKind wanted);
+
+/// Refuses the text of a plan where YAML was asked for. @throws InputError
+void expect_no_plan(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace tenon::config

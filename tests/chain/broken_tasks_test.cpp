@@ -1,0 +1,92 @@
+// tenon-plan --check on tasks that are wrong: its first line names the cause. The tasks stand in
+// broken_tasks.yaml.
+
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "shared/config/load.h"
+#include "tests/support/commands.h"
+#include "tests/support/places.h"
+
+namespace tenon::tests {
+namespace {
+
+std::string changed(std::string task, const YAML::Node& changes) {
+  for (const YAML::Node& change : changes) {
+    const auto from = change[0].as<std::string>();
+    const std::size_t at = task.find(from);
+    EXPECT_NE(at, std::string::npos) << "the task has no " << from;
+    if (at != std::string::npos) task.replace(at, from.size(), change[1].as<std::string>());
+  }
+  return task;
+}
+
+std::vector<std::string> check_command(const ScratchFolder& folder, const YAML::Node& broken,
+                                       const std::string& task) {
+  std::vector<std::string> command = {executable("tenon-plan")};
+  if (!broken["without_check"]) command.emplace_back("--check");
+  if (broken["file"]) {
+    command.push_back(in_tree(broken["file"].as<std::string>()));
+  } else if (broken["plan"]) {
+    command.push_back(shared_plan(broken["plan"].as<std::string>()));
+  } else {
+    const bool whole = static_cast<bool>(broken["text"]);
+    command.push_back(folder.put(
+        "task.yaml", whole ? broken["text"].as<std::string>() : changed(task, broken["change"])));
+  }
+  for (const YAML::Node& option : broken["options"]) command.push_back(option.as<std::string>());
+  return command;
+}
+
+std::string first_line(const Ended& ended) {
+  const std::string text = ended.err + ended.out;
+  return text.substr(0, text.find('\n'));
+}
+
+TEST(BrokenTasks, TheFirstLineOfTheCheckNamesTheCause) {
+  const YAML::Node document = YAML::LoadFile(in_tree("tests/chain/broken_tasks.yaml"));
+  const auto task = document["task"].as<std::string>();
+  const ScratchFolder folder;
+  for (const YAML::Node& broken : document["broken"]) {
+    SCOPED_TRACE(broken["name"].as<std::string>());
+    const Ended ended = run(folder, check_command(folder, broken, task));
+    const std::string line = first_line(ended);
+    std::printf("%s:\n    %s\n", broken["name"].as<std::string>().c_str(), line.c_str());
+    EXPECT_TRUE(ended.status == 2 || ended.status == 0) << ended.status;
+    EXPECT_EQ(line.find("nothing stands against"), std::string::npos) << line;
+    for (const YAML::Node& word : broken["says"]) {
+      EXPECT_NE(line.find(word.as<std::string>()), std::string::npos)
+          << "no " << word << " in: " << line;
+    }
+  }
+  EXPECT_GE(document["broken"].size(), 50U);
+}
+
+TEST(BrokenTasks, TheTaskThatTheyBreakIsWhole) {
+  const YAML::Node document = YAML::LoadFile(in_tree("tests/chain/broken_tasks.yaml"));
+  const ScratchFolder folder;
+  const std::string file = folder.put("task.yaml", document["task"].as<std::string>());
+  const Ended ended = run(folder, {executable("tenon-plan"), "--check", file});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(first_line(ended), file + ": nothing stands against planning it");
+}
+
+TEST(BrokenTasks, NothingStandsAgainstAnyTaskThatShips) {
+  const ScratchFolder folder;
+  for (const std::string& file : task_files()) {
+    std::vector<std::string> names = {file};
+    for (const std::string& variant : task_variants(file)) names.push_back(file + "#" + variant);
+    for (const std::string& name : names) {
+      const Ended ended = run(folder, {executable("tenon-plan"), "--check", name});
+      EXPECT_EQ(ended.status, 0) << ended.err << ended.out;
+      EXPECT_EQ(first_line(ended), name + ": nothing stands against planning it");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tenon::tests
