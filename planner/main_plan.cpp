@@ -39,6 +39,7 @@ struct Arguments {
   std::size_t threads = all_cores();
   std::size_t draws = planner::kDrawsMin;
   std::optional<double> time_limit_s;
+  std::optional<std::uint64_t> move_limit;
   double improve_s = 0.0;
   bool verbose = false;
   bool check = false;
@@ -61,6 +62,10 @@ void describe(CLI::App& app, Arguments& a) {
       ->default_str("all cores");
   app.add_option("--time-limit", a.time_limit_s,
                  "Seconds after which no path is searched for any more (the task's)");
+  app.add_option("--move-limit", a.move_limit,
+                 "Simulated moves after which no path is searched for any more, the same on every "
+                 "machine (none)")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}));
   app.add_option("--improve", a.improve_s,
                  "Seconds to look for better plans once there is one; each is printed and written")
       ->check(CLI::Range(0.0, 86400.0))
@@ -134,6 +139,7 @@ int run(const Arguments& a) {
   options.method = chosen_method(a.method);
   options.threads = a.threads;
   options.draws = a.draws;
+  if (a.move_limit) options.moves_max = *a.move_limit;
   if (a.verbose) {
     options.progress = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }

@@ -20,6 +20,8 @@ const char* to_string(PlanStatus status) {
       return "expansion limit";
     case PlanStatus::kNotCertified:
       return "not certified";
+    case PlanStatus::kMoveLimit:
+      return "move limit";
   }
   return "?";
 }

@@ -25,6 +25,7 @@ enum class PlanStatus : std::uint8_t {
   kTimeLimit = 5,
   kExpansionLimit = 6,
   kNotCertified = 7,  ///< every path that was found was refuted, as often as the budget allows
+  kMoveLimit = 8,     ///< as many moves as the budget allows have been simulated
 };
 [[nodiscard]] const char* to_string(PlanStatus status);
 

@@ -34,6 +34,9 @@ CellAssumptions assumptions_of(const Task& task, const PlannerOptions& options) 
 constexpr double kLowered = 0.5;
 constexpr double kLeastShare = 0.1;
 
+// After how long without a line progress is told, so that it is never silent for 2 s.
+constexpr double kSilent_s = 1.0;
+
 std::vector<Vector6> displacements_of(const Plan& plan) {
   std::vector<Vector6> displacements;
   for (const Step& step : plan.steps) displacements.push_back(step.displacement);
@@ -59,8 +62,10 @@ class Planning {
         succ_(pool_, search_move(task, start, assumptions_), task.rollout_step_us, edges_of(task)),
         long_succ_(pool_, long_move(task, search_move(task, start, assumptions_)),
                    task.rollout_step_us, edges_of(task)),
-        judge_(task, start, {options.method, assumptions_, options.draws}, pool_, now_s_) {
+        judge_(task, start, {options.method, assumptions_, options.draws}, pool_, now_s_),
+        told_s_(began_s_) {
     report_.method = options.method;
+    if (options.progress) pool_.after_each_move([this] { tell_if_silent(); });
   }
 
   /// Guides, and then in turn: search a path, judge it, learn from what refuted it.
@@ -73,7 +78,7 @@ class Planning {
     }
     searched_.emplace(task_, start, guides_from(start), succ_);
     for (std::size_t round = 0; round < options_.rounds_max; ++round) {
-      search({task_.w1, task_.w2, options_.expansions_max}, [this] { return out_of_time(); });
+      search({task_.w1, task_.w2, options_.expansions_max}, [this] { return out_of_budget(); });
       if (!report_.search.has_path) return without_path();
       Judgement judgement = judge_.judge(searched_->displacements(report_.search.path));
       if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
@@ -87,11 +92,26 @@ class Planning {
   }
 
  private:
-  void tell(const std::string& what) const {
-    if (options_.progress) options_.progress(format("%6.1f s: ", now_s_() - began_s_) + what);
+  void tell(const std::string& what) {
+    if (!options_.progress) return;
+    told_s_ = now_s_();
+    options_.progress(format("%6.1f s: ", told_s_ - began_s_) + what);
+  }
+
+  /// Whatever takes long is made of many moves, so none of it is silent for long.
+  void tell_if_silent() {
+    if (now_s_() - told_s_ >= kSilent_s) tell(still(doing_, moves_simulated(), states()));
   }
 
   [[nodiscard]] bool out_of_time() const { return now_s_() - began_s_ > task_.time_limit_s; }
+  [[nodiscard]] bool out_of_moves() const { return moves_simulated() >= options_.moves_max; }
+  [[nodiscard]] bool out_of_budget() const { return out_of_moves() || out_of_time(); }
+
+  [[nodiscard]] std::uint64_t moves_simulated() const {
+    return succ_.counters().rollouts + long_succ_.counters().rollouts +
+           judge_.effort().certification_moves + judge_.effort().validation_moves;
+  }
+  [[nodiscard]] std::size_t states() const { return searched_ ? searched_->states() : 0; }
 
   /// Such a planner has nothing but its one particle.
   [[nodiscard]] bool is_baseline() const { return options_.method != PlanMethod::kMha; }
@@ -106,7 +126,7 @@ class Planning {
     Attractors attractors = timed(now_s_, report_.times.attractors_s, [&] {
       return is_baseline() ? Attractors{{}, goal_attractors(task_, start, long_succ_), 0}
                            : find_attractors(task_, start, long_succ_, pool_.front(),
-                                             [this] { return out_of_time(); });
+                                             [this] { return out_of_budget(); });
     });
     report_.guides = attractors.guides.size();
     report_.unsettled = attractors.unsettled;
@@ -115,6 +135,7 @@ class Planning {
   }
 
   void search(const SearchParameters& parameters, const std::function<bool()>& stop) {
+    doing_ = "searching";
     BeliefGraph& graph = searched_->graph();
     report_.search = timed(now_s_, report_.times.search_s, [&] {
       return options_.method == PlanMethod::kContactGreedy
@@ -123,6 +144,7 @@ class Planning {
     });
     report_.expansions += report_.search.expanded.size();
     if (report_.refusals.empty()) report_.expansions_first = report_.expansions;
+    doing_ = "judging a path";
     if (report_.search.has_path) tell(path_found(report_.search));
   }
 
@@ -135,12 +157,14 @@ class Planning {
   PlanReport without_path() {
     PlanStatus status = PlanStatus::kExhausted;
     if (report_.search.status == SearchStatus::kStopped) {
-      status = out_of_time() ? PlanStatus::kTimeLimit : PlanStatus::kExpansionLimit;
+      status = out_of_moves()  ? PlanStatus::kMoveLimit
+               : out_of_time() ? PlanStatus::kTimeLimit
+                               : PlanStatus::kExpansionLimit;
     } else if (report_.guides == 0 && !is_baseline()) {
       status = PlanStatus::kNoAttractor;
     }
-    return ended(status,
-                 no_path(status, report_, searched_->graph(), task_, options_.expansions_max));
+    const SearchLimits limits{task_.time_limit_s, options_.expansions_max, options_.moves_max};
+    return ended(status, no_path(status, report_, searched_->graph(), limits));
   }
 
   void keep(JudgedPlan judged, const SearchResult& search) {
@@ -206,7 +230,7 @@ class Planning {
   PlanReport ended(PlanStatus status, const std::string& reason) {
     report_.status = status;
     report_.reason = reason;
-    if (searched_) report_.states = searched_->states();
+    report_.states = states();
     report_.search_moves = succ_.counters();
     report_.attractor_moves = long_succ_.counters();
     const JudgeEffort& effort = judge_.effort();
@@ -229,6 +253,8 @@ class Planning {
   PathJudge judge_;
   std::optional<SearchedGraph> searched_;
   bool refuted_ = false;  ///< the last better path
+  double told_s_;         ///< when progress was last told
+  const char* doing_ = "looking for guides";
   PlanReport report_;
 };
 

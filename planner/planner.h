@@ -11,7 +11,9 @@
 // kept between two calls, no file is touched, and no clock is read but the one that is handed in.
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -34,12 +36,17 @@ struct PlannerOptions {
   std::size_t draws = kDrawsMin;      ///< random starts of each validation
   std::size_t expansions_max = 5000;  ///< of one search
   std::size_t rounds_max = 100;       ///< searches, each without what the last ones had refuted
+  /// Guarded moves simulated, for guides, search and judging together, after which no path is
+  /// searched for any more: a budget that does not depend on the machine or its load. What is being
+  /// expanded or judged then is still brought to its end.
+  std::uint64_t moves_max = std::numeric_limits<std::uint64_t>::max();
   /// How long to look for better plans once there is one, with ever lower weights on the same graph
   /// (s, by the clock that is handed in). 0: the first plan is the plan.
   double improve_s = 0.0;
   /// Told of every plan that is kept, the first and each better one, with its bytes; may be empty.
   std::function<void(const PlanReport&)> planned;
-  /// Told, in a line, what has just been done; may be empty. Called from the caller's thread.
+  /// Told, in a line, what has just been done, and every second or so that planning goes on; may be
+  /// empty. Called from the caller's thread.
   std::function<void(const std::string&)> progress;
 };
 
@@ -48,7 +55,7 @@ struct PlannerOptions {
 /// time limit strikes depends on the clock.
 /// @param rollout physics of the same task; cloned for each thread
 /// @param now_s for the task's time limit (time_limit_s) and the times of the report. Without one
-/// there is no limit but expansions_max and rounds_max, and all times are 0
+/// there is no limit but expansions_max, rounds_max and moves_max, and all times are 0
 /// @return the status says whether there is a plan; no plan is no error
 /// @throws InputError where a plan cannot be represented in a file
 [[nodiscard]] PlanReport make_plan(const Task& task, const Start& start, const Rollout& rollout,

@@ -59,6 +59,11 @@ std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves) 
   return text;
 }
 
+std::string still(const char* doing, std::uint64_t moves, std::size_t states) {
+  return format("%s, %llu moves simulated and %zu states so far", doing,
+                static_cast<unsigned long long>(moves), states);
+}
+
 std::string path_found(const SearchResult& search) {
   return format("a path of %zu steps after %zu expansions", search.path.size(),
                 search.expanded.size());
@@ -74,12 +79,15 @@ std::string already_at_goal(const Start& start) {
 }
 
 std::string no_path(PlanStatus status, const PlanReport& report, const BeliefGraph& graph,
-                    const Task& task, std::size_t expansions_max) {
+                    const SearchLimits& limits) {
   std::string what = "the searched graph has no path left after ";
   if (status == PlanStatus::kTimeLimit) {
-    what = format("no path within %g s (raise --time-limit), after ", task.time_limit_s);
+    what = format("no path within %g s (raise --time-limit), after ", limits.time_s);
+  } else if (status == PlanStatus::kMoveLimit) {
+    what = format("no path within %llu simulated moves (raise --move-limit), after ",
+                  static_cast<unsigned long long>(limits.moves));
   } else if (status == PlanStatus::kExpansionLimit) {
-    what = format("%zu expansions in a search, the limit: no path after ", expansions_max);
+    what = format("%zu expansions in a search, the limit: no path after ", limits.expansions);
   } else if (status == PlanStatus::kNoAttractor) {
     what = "no push from the start reduces its uncertainty, and no path exists after ";
   }

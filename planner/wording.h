@@ -13,11 +13,19 @@
 #include "planner/search/belief_graph.h"
 #include "planner/search/guide.h"
 #include "planner/search/mha_search.h"
-#include "shared/task/task.h"
 
 namespace tenon::planner {
 
+/// What ends a search that finds no path.
+struct SearchLimits {
+  double time_s = 0.0;
+  std::size_t expansions = 0;
+  std::uint64_t moves = 0;
+};
+
 // Progress.
+/// That planning goes on. @param doing "searching"  @param moves simulated so far, of all kinds
+[[nodiscard]] std::string still(const char* doing, std::uint64_t moves, std::size_t states);
 [[nodiscard]] std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves);
 [[nodiscard]] std::string path_found(const SearchResult& search);
 
@@ -28,11 +36,10 @@ namespace tenon::planner {
 
 // Reasons: why there is no plan.
 [[nodiscard]] std::string already_at_goal(const Start& start);
-/// @param status kTimeLimit, kExpansionLimit, kNoAttractor or kExhausted
+/// @param status kTimeLimit, kMoveLimit, kExpansionLimit, kNoAttractor or kExhausted
 /// @param report of all searches so far  @param graph how near the last one came
 [[nodiscard]] std::string no_path(PlanStatus status, const PlanReport& report,
-                                  const BeliefGraph& graph, const Task& task,
-                                  std::size_t expansions_max);
+                                  const BeliefGraph& graph, const SearchLimits& limits);
 [[nodiscard]] std::string every_path_refuted(const PlanReport& report, std::size_t paths);
 
 }  // namespace tenon::planner

@@ -21,6 +21,9 @@ class RolloutPool {
   /// is thrown here, that of the lowest i where there are several.
   void run(std::size_t jobs, const std::function<void(Rollout&, std::size_t)>& job);
 
+  /// @param told called after every move that is simulated on the caller's thread, and only there
+  void after_each_move(std::function<void()> told);
+
   /// For questions outside of run().
   [[nodiscard]] Rollout& front() { return *rollouts_.front(); }
 

@@ -55,6 +55,7 @@ TEST(BadInput, OfThePlannerIsOneLineAndStatusTwo) {
       {{planner, box_task_file()}, {"--output", "--help"}},
       {{planner, box_task_file(), "--time-limit", "nan", "-o", output},
        {"--time-limit", "nan", "(0, 86400]"}},
+      {{planner, box_task_file(), "--move-limit", "0", "-o", output}, {"--move-limit", "0"}},
       {{planner, box_task_file(), "-o", "nowhere/x.tnp"}, {"nowhere/x.tnp", "written"}},
       {{executable("tenon-sim"), "--cell", gantry_cell_file(), "--task", box_task_file(), "--can",
         "slcan-listen://127.0.0.1:0", "--seed", "-1"},
