@@ -4,7 +4,8 @@
 #
 #   ./test.sh                  what a commit needs
 #   ./test.sh full             what a release needs: also every start of every task and variant, the long
-#                              studies, clang-tidy and its analyzer on every file, changed or not
+#                              studies, clang-tidy and its analyzer on every file, changed or not,
+#                              and the pages' bundle of libraries made anew and compared
 #   ./test.sh [full] STAGE...  only these stages, of: format lint unit guest asan tsan
 #                              and on demand: fuzz (full: a million runs of every binary decoder, 200,000 of
 #                              every text loader; hours)
@@ -81,6 +82,7 @@ passed_now() {
 stage_format() {
   sources | xargs --no-run-if-empty clang-format --dry-run --Werror
   echo "clang-format: $(sources | wc -l) files as they should be"
+  [[ $tier == commit ]] || shared/drawing/page/bundle/rebuild.sh --check
 }
 
 # Runs all three linters even if one has found something.

@@ -4,6 +4,7 @@
 #   .ci/setup.sh build   what building and the demo need
 #   .ci/setup.sh test    these, and what the tests and checks add
 #   .ci/setup.sh fuzz    these, and what the fuzzers add
+#   .ci/setup.sh page    what makes the pages' bundle of libraries anew
 set -euo pipefail
 
 build_packages=(
@@ -14,16 +15,18 @@ build_packages=(
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev
   clang-format clang-tidy cppcheck git python3 python3-can python3-serial iproute2
-  can-utils qemu-system-x86 busybox-static cpio
+  can-utils qemu-system-x86 busybox-static cpio chromium
 )
 fuzz_packages=(clang)
+page_packages=(nodejs npm)
 
 case "${1:-}" in
   build) packages=("${build_packages[@]}") ;;
   test) packages=("${build_packages[@]}" "${test_packages[@]}") ;;
   fuzz) packages=("${build_packages[@]}" "${test_packages[@]}" "${fuzz_packages[@]}") ;;
+  page) packages=("${page_packages[@]}") ;;
   *)
-    echo "usage: .ci/setup.sh build|test|fuzz" >&2
+    echo "usage: .ci/setup.sh build|test|fuzz|page" >&2
     exit 2
     ;;
 esac

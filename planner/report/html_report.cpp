@@ -1,9 +1,11 @@
 #include "planner/report/html_report.h"
 
-#include <algorithm>
-#include <set>
+#include <cstddef>
+#include <string>
 #include <vector>
 
+#include "planner/report/drops.h"
+#include "planner/report/page_data.h"
 #include "planner/report/pictures.h"
 #include "planner/report/report_data.h"
 #include "planner/report/report_words.h"
@@ -12,18 +14,11 @@
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
+#include "shared/drawing/page.h"
 #include "shared/drawing/view.h"
 
 namespace tenon::planner {
 namespace {
-
-constexpr const char* kStyle =
-    "body{font:15px/1.45 sans-serif;max-width:1100px;margin:24px auto;"
-    "padding:0 16px;color:#222}h1{font-size:24px;margin-bottom:4px}h2{font-size:18px;"
-    "margin:28px 0 8px}table{border-collapse:collapse;font-size:13px}td,th{border-bottom:1px "
-    "solid #ddd;padding:3px 9px;text-align:left;vertical-align:top}th{background:#f4f4f4}"
-    "figure{display:inline-block;width:200px;margin:0 12px 14px 0;vertical-align:top;"
-    "font-size:12px}svg{background:#fff;display:block;max-height:640px}.num{text-align:right}";
 
 ReportData data_of(const Plan& plan, const Task& task, const Certification& certification,
                    const Validation& validation) {
@@ -35,70 +30,69 @@ ReportData data_of(const Plan& plan, const Task& task, const Certification& cert
 
 std::string verdict(const ReportData& data) {
   const Plan& plan = data.plan;
-  std::string text = "<p>";
+  std::string text = "<p class='lead'>";
   if (data.is_baseline()) {
     text += format(
         "%zu steps by the baseline <b>%s</b>, which plans for the nominal start alone. It ends "
         "there within %.1f mm of the goal. ",
         plan.steps.size(), to_string(plan.method), 1e3 * plan.goal_tolerance_m);
   } else {
-    text += format("%zu steps bring the tool from an uncertainty of ", plan.steps.size()) +
+    text += format("%zu guarded moves bring the tool from an uncertainty of ", plan.steps.size()) +
             spread_text(plan, data.nodes.front().spread) + " to " +
             spread_text(plan, data.nodes.back().spread) +
-            format(" (standard deviations of the particles), within %.1f mm of the goal. ",
+            format(" (standard deviations of the particles), within %.1f mm of the goal.",
                    1e3 * plan.goal_tolerance_m);
   }
-  text += format("In validation %u of %u random starts ended there; repeated for this page: ",
-                 plan.draws_at_goal, plan.draws) +
-          estimate_text(data.validation, data.task) + ". ";
-  return text + (data.certified
-                     ? "Certified again for this page: the chain holds.</p>\n"
-                     : "<b>Certified again for this page: the chain does NOT hold.</b></p>\n");
+  return text + "</p>\n";
 }
 
-/// Each direction that contact settles, and with what.
+std::string badge(bool good, const std::string& text) {
+  return std::string("<li class='") + (good ? "good" : "bad") + "'>" + text + "</li>\n";
+}
+
+/// What was checked, and came out how.
+std::string badges(const ReportData& data) {
+  const Plan& plan = data.plan;
+  return "<ul class='badges'>\n" +
+         badge(data.certified, data.certified
+                                   ? "Certified again for this page: the chain holds"
+                                   : "Certified again for this page: the chain does NOT hold") +
+         badge(plan.draws_at_goal == plan.draws,
+               format("Validation: %u of %u random starts ended at the goal", plan.draws_at_goal,
+                      plan.draws)) +
+         badge(data.validation.at_goal() == data.validation.draws.size(),
+               "Repeated for this page: " + estimate_text(data.validation, data.task)) +
+         "</ul>\n";
+}
+
+std::string reason(const ReportData& data, int axis) {
+  const double before = data.nodes.front().spread[axis];
+  const double after = data.nodes.back().spread[axis];
+  std::string html = "<li><b>" + std::string(axis_name(axis)) + " " + amount(before, axis) +
+                     " &rarr; " + amount(after, axis) + "</b>";
+  const std::vector<Drop> drops = drops_along(data, axis);
+  if (drops.empty()) return html + ": no step needs to make it more certain</li>\n";
+  html += "<ul>\n";
+  for (const Drop& drop : drops) {
+    html += format("<li><button type='button' class='jump' data-step='%zu'>step %zu</button> ",
+                   drop.step + 1, drop.step) +
+            amount(drop.before, axis) + " &rarr; " + amount(drop.after, axis) + ": " +
+            drawing::escaped(drop.why) + "</li>\n";
+  }
+  return html + "</ul></li>\n";
+}
+
+/// Each direction, and the steps that settle it.
 std::string reasons(const ReportData& data) {
+  if (data.is_baseline() || data.nodes.empty()) return {};
   std::string items;
-  for (int axis = 0; axis < 6 && !data.is_baseline(); ++axis) {
-    const double before = data.nodes.front().spread[axis];
-    const double after = data.nodes.back().spread[axis];
-    if (before < kWorthTelling || after > kCollapsed * before) continue;
-    std::set<std::string> touched;
-    std::string steps;
-    for (std::size_t step = 0; step + 1 < data.nodes.size(); ++step) {
-      const double settled = data.nodes[step].spread[axis] - data.nodes[step + 1].spread[axis];
-      if (settled < kWorthTelling) continue;
-      touched.merge(found_or_lost(data, step));
-      steps += format("%s%zu", steps.empty() ? "" : ", ", step);
-    }
-    items += "<li>" + std::string(axis_name(axis)) + " " + amount(before, axis) + " &rarr; " +
-             amount(after, axis) + ": contact with " + names_of(touched) +
-             " begins or ends, in steps " + steps + "</li>\n";
+  for (int axis = 0; axis < 6; ++axis) {
+    if (has(data.plan.coordinates, axis)) items += reason(data, axis);
   }
-  if (items.empty()) return {};
-  return "<p>Why it works: wherever the tool starts, contact puts it at a known place "
-         "(standard deviations at the start and at the end).</p>\n<ul>\n" +
-         items + "</ul>\n";
-}
-
-/// A picture and its words for each step that all particles ran.
-std::string figures(const ReportData& data) {
-  std::size_t steps = data.plan.steps.size();
-  for (const Chain& chain : data.chains) steps = std::min(steps, chain.moves.size());
-  std::string html;
-  for (std::size_t step = 0; step < steps; ++step) {
-    std::string pictures;
-    for (const drawing::View& view : drawing::views_of(data.plan.coordinates)) {
-      pictures += step_picture(data, view, step);
-    }
-    const std::set<std::string> touched = touched_after(data, step);
-    html += drawing::figure(
-        pictures, format("step %zu: ", step) + displacement_text(data.plan.steps[step]) + "<br>" +
-                      outcomes_text(data, step) +
-                      (touched.empty() ? "" : "<br>touches " + names_of(touched)) +
-                      shrinkages(data, step));
-  }
-  return html;
+  return "<section aria-labelledby='why'><h2 id='why'>Why it works</h2>\n<p>Wherever the tool "
+         "starts, contact puts it at a known place. Standard deviation of each direction at the "
+         "start and at the end, and the steps that make the difference:</p>\n<ul class='why'>\n" +
+         items + "</ul></section>\n";
 }
 
 std::string envelope_text(const Plan& plan, const OutcomeRule& rule) {
@@ -117,29 +111,56 @@ std::string envelope_text(const Plan& plan, const OutcomeRule& rule) {
   return text;
 }
 
-std::string table(const Plan& plan) {
+/// The cells that stand once a step, whichever outcomes it may have.
+std::string step_cells(const ReportData& data, std::size_t index) {
+  const Step& step = data.plan.steps[index];
   std::string html =
-      "<table><tr><th>Step</th><th>Displacement</th><th>Slow from (mm)</th>"
-      "<th>Outcome</th><th>Expected travel (mm, deg) and contacts</th><th>Next</th></tr>\n";
+      format("<th scope='row'><button type='button' class='jump' data-step='%zu'>%zu</button></th>",
+             index + 1, index) +
+      "<td data-label='Move'>" + displacement_text(step) +
+      format("</td><td class='num' data-label='Slow from'>%.0f mm</td>", 1e3 * step.slow_from_m);
+  if (index + 1 >= data.nodes.size()) return html + "<td></td><td></td>";
+  return html + "<td data-label='Particles'>" + outcomes_text(data, index) +
+         "</td><td data-label='Touches'>" + names_of(touched_after(data, index)) + "</td>";
+}
+
+std::string table(const ReportData& data) {
+  const Plan& plan = data.plan;
+  std::string html =
+      "<div class='wide'><table class='moves'><thead><tr><th>Step</th><th>Move</th>"
+      "<th>Slow from</th><th>Particles</th><th>Touches</th>"
+      "<th>Outcome</th><th>Expected travel (mm, deg) and contacts</th><th>Next</th>"
+      "</tr></thead>\n<tbody>\n";
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     bool first = true;
     for (const Outcome outcome : kOutcomes) {
       const OutcomeRule& rule = plan.steps[i].rule(outcome);
       if (rule.successor == kSuccessorFail) continue;
-      html +=
-          first ? format("<tr><td>%zu</td><td>%s</td><td class='num'>%.0f</td>", i,
-                         displacement_text(plan.steps[i]).c_str(), 1e3 * plan.steps[i].slow_from_m)
-                : "<tr><td></td><td></td><td></td>";
-      html += format("<td>%s</td><td>", to_string(outcome)) + envelope_text(plan, rule) +
-              "</td><td>" +
+      html += format("<tr data-step='%zu'>", i + 1) +
+              (first ? step_cells(data, i) : "<td></td><td></td><td></td><td></td><td></td>") +
+              format("<td data-label='Outcome'>%s</td>", to_string(outcome)) +
+              "<td data-label='Expected'>" + envelope_text(plan, rule) +
+              "</td><td data-label='Next'>" +
               (rule.successor == kSuccessorDone ? std::string("done")
                                                 : std::to_string(rule.successor)) +
               "</td></tr>\n";
       first = false;
     }
   }
-  return html + "</table>\n<p>Any other outcome" +
+  return html + "</tbody></table></div>\n<p>Any other outcome" +
          (plan.check_envelopes ? ", travel or contact" : "") + " stops the execution.</p>\n";
+}
+
+/// What stands still: in print, and where no script runs.
+std::string stills(const ReportData& data) {
+  std::string html = "<section class='still'>\n";
+  for (const drawing::View& view : drawing::views_of(data.plan.coordinates)) {
+    html += std::string("<h2>") + view.title + "</h2>\n" + overview(data, view);
+  }
+  return html +
+         "<p>Blue outline: the part at its nominal start; green: at the goal. Coloured: the paths "
+         "of the particles, from their hollow dots, as certified. Grey: " +
+         std::to_string(data.validation.draws.size()) + " random starts.</p></section>\n";
 }
 
 }  // namespace
@@ -147,23 +168,22 @@ std::string table(const Plan& plan) {
 std::string html_report(const Plan& plan, const Task& task, const Certification& certification,
                         const Validation& validation) {
   const ReportData data = data_of(plan, task, certification, validation);
-  const std::string title =
-      drawing::escaped(plan.task_name) + ", start " + drawing::escaped(plan.start_name);
-  std::string body = verdict(data) + reasons(data);
-  for (const drawing::View& view : drawing::views_of(plan.coordinates)) {
-    body += std::string("<h2>") + view.title + "</h2>\n" + overview(data, view);
-  }
-  body +=
-      "<p>Blue: the part at its nominal start; green: at the goal. Coloured: the paths of the "
-      "particles, from their hollow dots, as certified. Grey: " +
-      std::to_string(validation.draws.size()) + " random starts.</p>\n";
-  body += "<h2>Uncertainty over the steps</h2>\n" + uncertainty_chart(data);
-  body +=
-      "<h2>What each step does</h2>\n<p>Hollow dots: particles before the step, filled: after "
-      "it. Red: what is touched. Bold: a direction whose uncertainty the step removes.</p>\n" +
-      figures(data);
-  body += "<h2>Steps</h2>\n" + table(plan);
-  return drawing::document({title, kStyle, title, body});
+  const std::string task_name = drawing::escaped(plan.task_name);
+  const std::string start_name = drawing::escaped(plan.start_name);
+  drawing::LivePage page;
+  page.title = task_name + ", start " + start_name + ": plan";
+  page.heading = "<p class='kicker'>Assembly plan</p><h1>" + task_name + " <span>from start " +
+                 start_name + "</span></h1>\n" + verdict(data) + badges(data);
+  page.body =
+      "<section class='stage' aria-label='The plan in motion' data-part='stage'></section>\n" +
+      stills(data) + reasons(data) +
+      "<section aria-labelledby='uncertainty'><h2 id='uncertainty'>Uncertainty over the "
+      "steps</h2>\n<div data-part='uncertainty'></div><div class='still'>" +
+      uncertainty_chart(data) +
+      "</div></section>\n<section aria-labelledby='moves'><h2 id='moves'>Moves</h2>\n" +
+      table(data) + "</section>\n";
+  page.json = page_json(data);
+  return drawing::live_document(page);
 }
 
 }  // namespace tenon::planner

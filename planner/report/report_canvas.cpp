@@ -48,10 +48,11 @@ void Canvas::grow(const Vector3& p) {
   high_ = high_.cwiseMax(view_.m(p));
 }
 
-std::string Canvas::open(int width_px) const {
+std::string Canvas::open(const std::string& title) const {
   const Point size_mm = 1e3 * (high_ - low_);
-  return format("<svg width='%d' viewBox='%.2f %.2f %.2f %.2f'>\n", width_px, 1e3 * low_.x(),
-                -1e3 * high_.y(), size_mm.x(), size_mm.y());
+  return format("<svg role='img' viewBox='%.2f %.2f %.2f %.2f'>\n", 1e3 * low_.x(),
+                -1e3 * high_.y(), size_mm.x(), size_mm.y()) +
+         "<title>" + title + "</title>\n";
 }
 
 std::string Canvas::section(const Shape& shape, double depth_m, const std::string& style) const {

@@ -17,7 +17,8 @@ class Canvas {
   /// Holds the environment, and the held part at the goal and wherever these tools are.
   Canvas(const drawing::View& view, const Task& task, const std::vector<Vector3>& tools_m);
 
-  [[nodiscard]] std::string open(int width_px) const;
+  /// @param title HTML: what the picture shows, for who cannot see it
+  [[nodiscard]] std::string open(const std::string& title) const;
 
   /// The shape's outline where the plane through depth_m cuts it; empty where it does not.
   [[nodiscard]] std::string section(const Shape& shape, double depth_m,

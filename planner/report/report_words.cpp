@@ -1,6 +1,7 @@
 #include "planner/report/report_words.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
@@ -15,7 +16,7 @@ std::string names_of(const std::set<std::string>& names) {
 }
 
 std::string amount(double value, int axis) {
-  return format(axis < 3 ? "%.1f mm" : "%.2f&deg;", shown(value, axis));
+  return format(axis < 3 ? "%.1f mm" : "%.2f\u00b0", shown(value, axis));
 }
 
 std::string spread_text(const Plan& plan, const Vector6& spread) {
@@ -32,9 +33,10 @@ std::string displacement_text(const Step& step) {
   std::string text;
   for (int axis = 0; axis < 6; ++axis) {
     const double d = step.displacement[axis];
-    if (d == 0.0) continue;
+    // What the texts would round to nothing.
+    if (std::abs(shown(d, axis)) < (axis < 3 ? 0.5 : 0.05)) continue;
     text += (text.empty() ? "" : ", ") +
-            format(axis < 3 ? "%s %+.0f mm" : "%s %+.1f&deg;", axis_name(axis), shown(d, axis));
+            format(axis < 3 ? "%s %+.0f mm" : "%s %+.1f\u00b0", axis_name(axis), shown(d, axis));
   }
   return text;
 }
@@ -43,27 +45,14 @@ std::string outcomes_text(const ReportData& data, std::size_t step) {
   std::string text;
   for (const Outcome outcome : kOutcomes) {
     const auto count =
-        std::count_if(data.chains.begin(), data.chains.end(),
-                      [&](const Chain& chain) { return chain.moves[step].outcome == outcome; });
+        std::count_if(data.chains.begin(), data.chains.end(), [&](const Chain& chain) {
+          return step < chain.moves.size() && chain.moves[step].outcome == outcome;
+        });
     if (count == 0) continue;
     text +=
         (text.empty() ? "" : ", ") + format("%d %s", static_cast<int>(count), to_string(outcome));
   }
   return text;
-}
-
-std::string shrinkages(const ReportData& data, std::size_t step) {
-  std::string html;
-  if (step + 1 >= data.nodes.size()) return html;
-  for (int axis = 0; axis < 6; ++axis) {
-    const double before = data.nodes[step].spread[axis];
-    const double after = data.nodes[step + 1].spread[axis];
-    if (before - after < kWorthTelling) continue;
-    const std::string text = std::string(axis_name(axis)) + " " + amount(before, axis) +
-                             " &rarr; " + amount(after, axis);
-    html += "<br>" + (after < kCollapsed * before ? "<b>" + text + "</b>" : text);
-  }
-  return html;
 }
 
 }  // namespace tenon::planner

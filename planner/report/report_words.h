@@ -1,5 +1,5 @@
 #pragma once
-// The page's words: names, amounts and outcomes as HTML. Pure; any thread.
+// The page's words: names, amounts and outcomes, as plain text but for the names. Pure; any thread.
 
 #include <cstddef>
 #include <set>
@@ -11,7 +11,6 @@ namespace tenon::planner {
 
 /// A direction counts as settled once its spread is below this part of what it was.
 inline constexpr double kCollapsed = 0.2;
-inline constexpr double kWorthTelling = 2e-3;  ///< m or rad
 
 /// "wall, table", escaped.
 [[nodiscard]] std::string names_of(const std::set<std::string>& names);
@@ -26,8 +25,5 @@ inline constexpr double kWorthTelling = 2e-3;  ///< m or rad
 
 /// How many particles had which outcome in the step: "3 contact, 1 reached".
 [[nodiscard]] std::string outcomes_text(const ReportData& data, std::size_t step);
-
-/// What a step makes more certain, an item a direction; bold where it settles.
-[[nodiscard]] std::string shrinkages(const ReportData& data, std::size_t step);
 
 }  // namespace tenon::planner

@@ -1,0 +1,230 @@
+// The plan's page: the scene with its player, what happens now in words, and the uncertainty.
+
+class PlanPage {
+  constructor(data) {
+    this.data = data;
+    this.options = { particles: true, paths: true, draws: true, cut: this.hidesGoal() };
+    this.chains = data.draws.length ? data.draws : data.particles;
+    this.focus = this.chains[0];
+    this.buildStage(document.querySelector("[data-part=stage]"));
+    const chart = document.querySelector("[data-part=uncertainty]");
+    this.chart = new UncertaintyChart(chart, data, (time) => this.player.jump(time));
+    for (const button of document.querySelectorAll("button.jump")) {
+      button.addEventListener("click", () => this.show(Number(button.dataset.step)));
+    }
+    document.addEventListener("keydown", (event) => {
+      if (event.key === "r" && !event.ctrlKey && !event.metaKey) this.another();
+    });
+    this.begin();
+  }
+
+  // Whether the part ends so deep between other things that one has to look inside.
+  hidesGoal() {
+    const tip = this.data.goal;
+    let highest = -Infinity;
+    for (const shape of this.data.scene.environment) {
+      const z = shape.points_m.filter((_, i) => i % 3 === 2);
+      highest = Math.max(highest, ...z);
+    }
+    return this.data.coordinates.includes(2) && tip[2] < highest - 1e-3;
+  }
+
+  show(time) {
+    this.player.jump(time);
+    const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.stage.scrollIntoView({ behavior: calm ? "auto" : "smooth", block: "nearest" });
+  }
+
+  begin() {
+    const asked = /step=([\d.]+)/.exec(location.hash);
+    const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.player.jump(asked ? Number(asked[1]) : 0);
+    if (!asked && !calm) this.player.play();
+    document.documentElement.dataset.ready = "true";
+  }
+
+  buildStage(stage) {
+    this.stage = stage;
+    const canvas = element("div", { class: "canvas" });
+    this.player = new Player(this.data.steps.length, (time) => this.update(time));
+    this.now = element("aside", { class: "now", "aria-label": "What happens now" });
+    stage.append(
+      element(
+        "div",
+        { class: "picture" },
+        canvas,
+        this.buildViews(),
+        this.player.controls,
+        this.buildLegend(),
+      ),
+      this.now,
+    );
+    this.picture = new ScenePicture(canvas, this.data);
+    this.fillViews();
+    this.buildNow();
+  }
+
+  buildViews() {
+    this.viewBar = element("div", { class: "views", role: "group", "aria-label": "Views" });
+    return this.viewBar;
+  }
+
+  fillViews() {
+    for (const view of this.picture.views) {
+      const button = element("button", { type: "button" }, view.title);
+      button.addEventListener("click", () => {
+        this.picture.setView(view);
+        this.markView();
+      });
+      this.viewBar.append(button);
+    }
+    this.markView();
+  }
+
+  markView() {
+    [...this.viewBar.children].forEach((button, i) => {
+      button.setAttribute("aria-pressed", this.picture.views[i] === this.picture.view);
+    });
+  }
+
+  check(name, colour, text) {
+    const box = element("input", { type: "checkbox" });
+    box.checked = this.options[name];
+    box.addEventListener("change", () => {
+      this.options[name] = box.checked;
+      this.update(this.player.time);
+    });
+    return element(
+      "label",
+      { class: "key" },
+      box,
+      element("i", { style: `background:var(--${colour})` }),
+      text,
+    );
+  }
+
+  buildLegend() {
+    const count = this.data.particles.length;
+    const random = element("button", { type: "button", class: "random", title: "Another random start (R)" });
+    random.append("Another start");
+    random.addEventListener("click", () => this.another());
+    this.frontText = element("span");
+    const legend = element(
+      "div",
+      { class: "legend" },
+      element("span", { class: "key" }, element("i", { style: "background:var(--part)" }), this.frontText),
+      this.data.draws.length ? random : null,
+      this.check("particles", "particle", count + (count === 1 ? " particle" : " particles")),
+      this.check("paths", "particle", "paths"),
+      this.data.draws.length ? this.check("draws", "muted", this.data.draws.length + " random starts") : null,
+      element("span", { class: "key" }, element("i", { style: "background:var(--goal)" }), "goal"),
+      element("span", { class: "key" }, element("i", { style: "background:var(--contact)" }), "touched"),
+    );
+    if (hasWebGl()) legend.append(this.check("cut", "environment", "cut open"));
+    this.nameFront();
+    return legend;
+  }
+
+  nameFront() {
+    const chain = this.focus;
+    this.frontText.textContent =
+      chain.sigmas === undefined
+        ? "particle 0"
+        : `random start ${this.data.draws.indexOf(chain)}, ${chain.sigmas.toFixed(1)}σ out`;
+  }
+
+  another() {
+    if (!this.data.draws.length) return;
+    const others = this.data.draws.filter((chain) => chain !== this.focus);
+    if (others.length) this.focus = others[Math.floor(Math.random() * others.length)];
+    this.nameFront();
+    this.update(this.player.time);
+  }
+
+  buildNow() {
+    this.heading = element("h2", {});
+    this.words = element("div", { class: "words", "aria-live": "polite" });
+    this.bars = this.data.coordinates.map((axis) => {
+      const fill = element("i");
+      const value = element("b");
+      const row = element(
+        "div",
+        { class: "bar" },
+        element("span", {}, AXES[axis]),
+        element("div", {}, fill),
+        value,
+      );
+      return { axis, fill, value, row };
+    });
+    const note = element("p", { class: "note" }, "Uncertainty, standard deviation (bar: logarithmic)");
+    this.now.append(this.heading, this.words, note, ...this.bars.map((bar) => bar.row));
+  }
+
+  update(time) {
+    if (!this.picture || !this.chart) return;
+    const state = stateAt(this.data, time, this.focus);
+    this.picture.draw(state, this.options);
+    this.chart.show(time);
+    this.tell(time, state);
+    const count = this.data.steps.length;
+    const at = time >= count ? "end" : String(Math.floor(time));
+    Object.assign(document.documentElement.dataset, { step: at, spread: JSON.stringify(state.spread) });
+  }
+
+  tell(time, state) {
+    const count = this.data.steps.length;
+    const move = Math.min(Math.floor(time), count - 1);
+    const ended = time >= count;
+    const key = ended ? "end" : move;
+    if (this.told !== key) {
+      this.told = key;
+      this.heading.textContent = ended ? `All ${count} steps are done` : `Step ${move} of 0 to ${count - 1}`;
+      this.words.replaceChildren(...this.sentences(move, ended));
+      for (const row of document.querySelectorAll("tr[data-step]")) {
+        row.classList.toggle("current", Number(row.dataset.step) === move + 1 && !ended);
+      }
+    }
+    this.showBars(state, move, ended);
+  }
+
+  sentences(move, ended) {
+    const line = (label, text) => element("p", {}, element("span", { class: "term" }, label), " ", text);
+    if (ended) {
+      const good = this.data.draws.filter((chain) => chain.at_goal).length;
+      const particles = line(
+        "Particles",
+        `${this.data.particles.filter((chain) => chain.done).length} of ${this.data.particles.length} done`,
+      );
+      return this.data.draws.length
+        ? [particles, line("Random starts", `${good} of ${this.data.draws.length} at the goal`)]
+        : [particles];
+    }
+    const step = this.data.steps[move];
+    const lines = [element("p", { class: "move" }, step.words)];
+    if (step.outcomes) lines.push(line("Ends by", step.outcomes));
+    if (step.touched && step.touched.length) lines.push(line("Touches then", step.touched.join(", ")));
+    for (const gain of step.gains || []) {
+      const verb = gain.settled ? " becomes certain: " : " becomes more certain: ";
+      lines.push(element("p", { class: "gain" }, element("b", {}, AXES[gain.axis]), verb, gain.why));
+    }
+    return lines;
+  }
+
+  showBars(state, move, ended) {
+    const gains = ended ? [] : this.data.steps[move].gains || [];
+    for (const bar of this.bars) {
+      bar.row.hidden = !state.spread;
+      if (!state.spread) continue;
+      const value = state.spread[bar.axis];
+      const first = Math.max(...this.data.nodes.map((node) => node.spread[bar.axis]), 1e-9);
+      const share = Math.max(0, 1 + Math.log10(Math.max(value, 1e-12) / first) / 3);
+      bar.fill.style.width = (100 * share).toFixed(1) + "%";
+      bar.value.textContent = amount(value, bar.axis);
+      bar.row.classList.toggle(
+        "gaining",
+        gains.some((gain) => gain.axis === bar.axis),
+      );
+      bar.row.classList.toggle("certain", value < 0.05 * first);
+    }
+  }
+}

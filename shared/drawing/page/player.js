@@ -1,0 +1,128 @@
+// Time over the moves of a plan: play, step, scrub, by mouse and keys. Tells its listener of every change.
+
+const SECONDS_PER_MOVE = 1.4;
+
+// Drawn and not written: not every font has these signs.
+function iconOf(path) {
+  const icon = svgElement("svg", { viewBox: "0 0 16 16", width: 14, height: 14, "aria-hidden": "true" });
+  icon.append(svgElement("path", { d: path, fill: "currentColor" }));
+  return icon;
+}
+
+class Player {
+  constructor(count, listener) {
+    this.count = count;
+    this.listener = listener;
+    this.time = 0;
+    this.playing = false;
+    this.speed = 1;
+    this.controls = this.buildControls();
+    document.addEventListener("keydown", (event) => this.onKey(event));
+  }
+
+  button(icon, title, action) {
+    const made = element("button", { type: "button", title, "aria-label": title });
+    if (icon) made.append(iconOf(icon));
+    made.addEventListener("click", action);
+    return made;
+  }
+
+  buildControls() {
+    this.playButton = this.button("", "Play", () => this.toggle());
+    this.playButton.classList.add("play");
+    this.range = element("input", { type: "range", min: 0, max: this.count, step: 0.01, value: 0 });
+    this.range.setAttribute("aria-label", "Step of the plan");
+    this.range.addEventListener("input", () => {
+      this.pause();
+      this.set(Number(this.range.value));
+    });
+    const ticks = element("div", { class: "ticks", "aria-hidden": "true" });
+    for (let i = 0; i <= this.count; ++i) ticks.append(element("i"));
+    this.select = element("select", { "aria-label": "Speed of the play" });
+    for (const speed of [0.25, 0.5, 1, 2, 4]) {
+      this.select.append(element("option", { value: speed }, speed + "×"));
+    }
+    this.select.value = "1";
+    this.select.addEventListener("change", () => (this.speed = Number(this.select.value)));
+    return element(
+      "div",
+      { class: "controls", role: "group", "aria-label": "Play the plan" },
+      this.button("M2 2h2v12h-2zM14 2v12l-9 -6z", "To the start (Home)", () => this.jump(0)),
+      this.button("M12 2v12l-9 -6z", "One step back (left arrow)", () => this.step(-1)),
+      this.playButton,
+      this.button("M4 2v12l9 -6z", "One step on (right arrow)", () => this.step(+1)),
+      this.button("M12 2h2v12h-2zM2 2v12l9 -6z", "To the end (End)", () => this.jump(this.count)),
+      element("div", { class: "scrub" }, this.range, ticks),
+      this.select,
+    );
+  }
+
+  onKey(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (["SELECT", "TEXTAREA"].includes(event.target.tagName)) return;
+    const onButton = event.target.tagName === "BUTTON" || event.target.tagName === "SUMMARY";
+    const actions = {
+      " ": () => this.toggle(),
+      ArrowLeft: () => this.step(-1),
+      ArrowRight: () => this.step(+1),
+      Home: () => this.jump(0),
+      End: () => this.jump(this.count),
+    };
+    if (!(event.key in actions) || (event.key === " " && onButton)) return;
+    event.preventDefault();
+    actions[event.key]();
+  }
+
+  set(time) {
+    this.time = Math.max(0, Math.min(this.count, time));
+    this.range.value = this.time;
+    this.range.setAttribute(
+      "aria-valuetext",
+      this.time >= this.count ? "end" : "step " + Math.floor(this.time),
+    );
+    this.listener(this.time, this.playing);
+  }
+
+  jump(time) {
+    this.pause();
+    this.set(time);
+  }
+
+  step(by) {
+    this.jump(by > 0 ? Math.floor(this.time + 1e-6) + 1 : Math.ceil(this.time - 1e-6) - 1);
+  }
+
+  toggle() {
+    if (this.playing) this.pause();
+    else this.play();
+  }
+
+  play() {
+    if (this.time >= this.count) this.set(0);
+    this.playing = true;
+    this.showState();
+    let last = null;
+    const frame = (now) => {
+      if (!this.playing) return;
+      const elapsed = last === null ? 0 : Math.min(now - last, 100);
+      last = now;
+      this.set(this.time + ((1e-3 * elapsed) / SECONDS_PER_MOVE) * this.speed);
+      if (this.time >= this.count) this.pause();
+      else requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  }
+
+  pause() {
+    this.playing = false;
+    this.showState();
+  }
+
+  showState() {
+    const title = this.playing ? "Pause (space)" : "Play (space)";
+    this.playButton.textContent = this.playing ? "Pause" : "Play";
+    this.playButton.setAttribute("title", title);
+    this.playButton.setAttribute("aria-label", title);
+    document.documentElement.dataset.playing = this.playing;
+  }
+}

@@ -1,0 +1,165 @@
+// The scene as flat SVG along one axis of the task frame, in millimetres: where there is no WebGL.
+
+const SVG_NAMESPACE = "http://www.w3.org/2000/svg";
+
+function svgElement(name, attributes = {}, ...children) {
+  const element = document.createElementNS(SVG_NAMESPACE, name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  element.append(...children);
+  return element;
+}
+
+class SvgScene {
+  constructor(host, data, bounds, palette) {
+    this.data = data;
+    this.bounds = bounds;
+    this.svg = svgElement("svg", {
+      role: "img",
+      "aria-label": "The part, its particles and the environment",
+    });
+    host.append(this.svg);
+    this.view = data.views[0];
+    this.recolour(palette);
+  }
+
+  at(point) {
+    return [1e3 * point[this.view.right], -1e3 * point[this.view.up]];
+  }
+
+  // The shadow of triangles: all wound the same way, so that together they fill what any of them covers.
+  shadow(shape, pose) {
+    const points = [];
+    for (let i = 0; i < shape.points_m.length; i += 3) {
+      const point = shape.points_m.slice(i, i + 3);
+      points.push(this.at(pose ? placed(pose, point) : point));
+    }
+    let path = "";
+    for (let i = 0; i < shape.triangles.length; i += 3) {
+      const [a, b, c] = [0, 1, 2].map((k) => points[shape.triangles[i + k]]);
+      const turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+      if (turn === 0) continue;
+      const corners = turn > 0 ? [a, b, c] : [a, c, b];
+      path += "M" + corners.map((p) => p[0].toFixed(2) + "," + p[1].toFixed(2)).join("L") + "Z";
+    }
+    return path;
+  }
+
+  recolour(palette) {
+    this.palette = palette;
+    this.build();
+    if (this.last) this.draw(...this.last);
+  }
+
+  setView(view) {
+    this.view = view;
+    this.build();
+    if (this.last) this.draw(...this.last);
+  }
+
+  build() {
+    const { low, high } = this.bounds;
+    const [left, bottom] = this.at(low);
+    const [right, top] = this.at(high);
+    this.size = Math.max(right - left, bottom - top);
+    const rim = 0.03 * this.size;
+    const box = [left - rim, top - rim, right - left + 2 * rim, bottom - top + 2 * rim];
+    this.svg.setAttribute("viewBox", box.map((value) => value.toFixed(2)).join(" "));
+    this.environment = this.data.scene.environment.map((shape) => ({
+      name: shape.name,
+      path: svgElement("path", { d: this.shadow(shape), "fill-opacity": 0.45 }),
+    }));
+    const goal = this.data.scene.held.map((shape) =>
+      svgElement("path", {
+        d: this.shadow(shape, this.data.goal),
+        fill: this.palette.goal,
+        "fill-opacity": 0.35,
+      }),
+    );
+    this.moving = svgElement("g");
+    this.svg.replaceChildren(...this.environment.map((entry) => entry.path), ...goal, this.moving);
+  }
+
+  part(pose, attributes) {
+    return this.data.scene.held.map((shape) =>
+      svgElement("path", { d: this.shadow(shape, pose), ...attributes }),
+    );
+  }
+
+  line(points, attributes) {
+    const list = points
+      .map((point) =>
+        this.at(point)
+          .map((value) => value.toFixed(2))
+          .join(","),
+      )
+      .join(" ");
+    return svgElement("polyline", { points: list, fill: "none", ...attributes });
+  }
+
+  dot(point, radius, attributes) {
+    const [cx, cy] = this.at(point);
+    return svgElement("circle", { cx, cy, r: radius * this.size, ...attributes });
+  }
+
+  draw(state, options) {
+    this.last = [state, options];
+    const colour = this.palette;
+    const unit = this.size;
+    for (const { name, path } of this.environment) {
+      path.setAttribute("fill", state.touched.has(name) ? colour.contact : colour.environment);
+    }
+    const elements = [];
+    if (options.draws) {
+      for (const pose of state.draws)
+        elements.push(this.dot(pose, 0.0025, { fill: colour.muted, "fill-opacity": 0.5 }));
+    }
+    if (options.particles) {
+      for (const pose of state.particles) {
+        elements.push(...this.part(pose, { fill: colour.particle, "fill-opacity": 0.1 }));
+      }
+    }
+    elements.push(...this.part(state.front, { fill: colour.part, "fill-opacity": 0.55 }));
+    const move = Math.floor(state.time);
+    if (options.paths) {
+      this.data.particles.forEach((chain, i) => {
+        const points = [...chain.poses.slice(0, move + 1), state.particles[i]];
+        elements.push(this.line(points, { stroke: colour.particle, "stroke-width": 0.0025 * unit }));
+      });
+    }
+    for (const pose of state.particles) elements.push(this.dot(pose, 0.006, { fill: colour.particle }));
+    elements.push(...this.arrowOf(state));
+    for (const flash of state.flashes) {
+      const ring = {
+        fill: "none",
+        stroke: colour.contact,
+        "stroke-opacity": 1 - flash.age,
+        "stroke-width": 0.005 * unit,
+      };
+      elements.push(this.dot(flash.at, 0.012 + 0.04 * flash.age, ring));
+    }
+    this.moving.replaceChildren(...elements);
+  }
+
+  arrowOf(state) {
+    if (!state.arrow) return [];
+    const { from, along } = state.arrow;
+    const flat = [along[this.view.right], along[this.view.up]];
+    const length = Math.hypot(...flat);
+    if (length === 0) return [];
+    const scale = Math.min(1, (0.22 * this.size) / (1e3 * length));
+    const to = from.map((value, i) => value + scale * along[i]);
+    const [x, y] = this.at(to);
+    const angle = (Math.atan2(-flat[1], flat[0]) * 180) / Math.PI;
+    const size = 0.02 * this.size;
+    const head = svgElement("path", {
+      d: `M0,${-size / 2}L${size},0L0,${size / 2}Z`,
+      transform: `translate(${x} ${y}) rotate(${angle})`,
+      fill: this.palette.arrow,
+    });
+    return [this.line([from, to], { stroke: this.palette.arrow, "stroke-width": 0.006 * this.size }), head];
+  }
+
+  dispose() {
+    this.svg.remove();
+  }
+}

@@ -1,0 +1,7 @@
+// Reads the page's one block of data and builds what is for its kind.
+
+{
+  const data = JSON.parse(document.getElementById("page-data").textContent);
+  document.documentElement.classList.add("live");
+  if (data.kind === "plan") new PlanPage(data);
+}

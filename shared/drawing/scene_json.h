@@ -1,0 +1,21 @@
+#pragma once
+// A task's shapes as the pages read them; page/README.md has the keys. Pure; any thread.
+
+#include <string>
+
+#include "shared/math/pose.h"
+#include "shared/task/task.h"
+
+namespace tenon::drawing {
+
+/// "hole" of "hole[12]": pieces of one ring or mesh have its name and a number each.
+[[nodiscard]] std::string piece_of(const std::string& shape_name);
+
+/// One JSON object: held part and environment as triangles, meshes decimated so that all of them
+/// together fit a page.
+[[nodiscard]] std::string scene_json(const Task& task);
+
+/// "[x, y, z, qw, qx, qy, qz]", m, to a hundredth of a millimetre.
+[[nodiscard]] std::string pose_json(const Pose& pose);
+
+}  // namespace tenon::drawing

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""The plan's page in headless Chromium: on a screen and a phone, light and dark, with WebGL and without.
+
+  plan_page.py TENON_INSPECT SOURCE PLANS [--pictures FOLDER]
+
+@param PLANS the folder of the plans that the tests share  @param FOLDER for a picture of each page
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from browser import Browser, BrowserError
+
+BYTES_MAX = 3_000_000
+ROOT = "document.documentElement.dataset"
+# (plan, task, cell that it was made for)
+PLANS = [
+    ("peg_2d_fine", "peg_in_hole_2d_fine", None),
+    ("box_se2_csp6", "box_on_table_se2", "csp6"),
+    ("toy_1d", "toy_1d", None),
+]
+
+
+class Failures:
+    def __init__(self):
+        self.count = 0
+
+    def check(self, good, what):
+        if not good:
+            self.count += 1
+            print(f"FAILED: {what}")
+
+
+def write_page(arguments, folder, plan, task, cell):
+    file = folder / f"{plan}.html"
+    command = [arguments.inspect, f"{arguments.plans}/{plan}.tnp", "--report", str(file),
+               "--task", f"{arguments.source}/planner/tasks/{task}.yaml"]
+    if cell:
+        command += ["--cell", f"{arguments.source}/hw/cells/{cell}.yaml"]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    return file
+
+
+def look(browser, file, webgl, failures, pictures):
+    """Each width and colour: nothing said, nothing asked for, nothing wider than the window."""
+    for width in (1400, 390):
+        for dark in (False, True):
+            name = f"{file.stem}_{width}_{'dark' if dark else 'light'}_{'webgl' if webgl else 'svg'}"
+            browser.open(file, width=width, dark=dark, fragment="#step=1.5")
+            browser.wait_for(f"{ROOT}.ready === 'true'")
+            failures.check(browser.evaluate(f"{ROOT}.step") == "1", f"{name}: does not open at the step asked for")
+            wide = browser.evaluate("document.documentElement.scrollWidth")
+            failures.check(wide <= width, f"{name}: {wide} px wide")
+            renderer = browser.evaluate("document.querySelector('.canvas').dataset.renderer")
+            failures.check(renderer == ("webgl" if webgl else "svg"), f"{name}: drawn by {renderer}")
+            for said in browser.said():
+                failures.check(False, f"{name}: says {said}")
+            for url in browser.requests():
+                failures.check(False, f"{name}: asks for {url}")
+            unnamed = browser.evaluate(
+                "[...document.querySelectorAll('button,input,select,svg[role=img],canvas')]"
+                ".filter(e => !(e.textContent.trim() || e.getAttribute('aria-label') || e.closest('label'))).length")
+            failures.check(unnamed == 0, f"{name}: {unnamed} elements without a name")
+            if pictures:
+                browser.picture(pictures / f"{name}.png")
+
+
+def press(browser, key):
+    for kind in ("keyDown", "keyUp"):
+        browser.call("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=0)
+
+
+def play(browser, file, failures):
+    """By itself from the start to the end, where the page says what the data says; then by keys."""
+    name = file.stem
+    browser.open(file, calm=False)
+    browser.wait_for(f"{ROOT}.ready === 'true'")
+    browser.evaluate("(() => { const s = document.querySelector('.controls select'); s.value = '4';"
+                     " s.dispatchEvent(new Event('change')); })()")
+    browser.wait_for(f"{ROOT}.playing === 'false' && {ROOT}.step === 'end'")
+    data = json.loads(browser.evaluate("document.getElementById('page-data').textContent"))
+    shown = json.loads(browser.evaluate(f"{ROOT}.spread"))
+    failures.check(shown == data["nodes"][-1]["spread"], f"{name}: ends with the spread {shown}")
+    heading = browser.evaluate("document.querySelector('.now h2').textContent")
+    failures.check(str(len(data["steps"])) in heading and "done" in heading, f"{name}: ends with '{heading}'")
+    arrived = sum(draw["at_goal"] for draw in data["draws"])
+    words = browser.evaluate("document.querySelector('.words').textContent")
+    failures.check(f"{arrived} of {len(data['draws'])} at the goal" in words, f"{name}: ends with '{words}'")
+    for key, step in (("Home", "0"), ("ArrowRight", "1" if len(data["steps"]) > 1 else "end"), ("ArrowLeft", "0"),
+                      ("End", "end")):
+        press(browser, key)
+        found = browser.evaluate(f"{ROOT}.step")
+        failures.check(found == step, f"{name}: key {key} leads to step {found}, not {step}")
+    failures.check(not browser.said(), f"{name}: says something while it plays")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("inspect")
+    parser.add_argument("source")
+    parser.add_argument("plans")
+    parser.add_argument("--pictures", type=pathlib.Path)
+    arguments = parser.parse_args()
+    failures = Failures()
+    with tempfile.TemporaryDirectory(prefix="tenon_pages_") as folder:
+        files = [write_page(arguments, pathlib.Path(folder), *plan) for plan in PLANS]
+        for file in files:
+            size = file.stat().st_size
+            print(f"{file.name}: {size} bytes")
+            failures.check(size < BYTES_MAX, f"{file.name}: {size} bytes, more than {BYTES_MAX}")
+        for webgl in (True, False):
+            with Browser(webgl) as browser:
+                for file in files:
+                    look(browser, file, webgl, failures, arguments.pictures)
+                play(browser, files[0], failures)
+    print(f"{len(files)} pages, {failures.count} failures")
+    return 1 if failures.count else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except BrowserError as error:
+        print(f"FAILED: {error}")
+        sys.exit(1)
