@@ -37,8 +37,8 @@ int run_plan(const Options& options, const Cell& cell, const DryRun& dry_run) {
   TaskRun run(options, controller, &controller.runner(), stop_asked);
   StepPrinter printer(controller.runner());
   run.add(printer);
-  std::optional<StepByStep> word;
-  if (options.step) word.emplace(controller, stop_asked);
+  std::optional<UserWords> words;
+  if (options.step || options.keys) words.emplace(controller, stop_asked, options.step);
   run.run();
   return run.conclude(
       gather_result(controller, run.runner(), run.records_dropped(), run.arm_fault_text()));

@@ -19,6 +19,7 @@ void add_work(CLI::App& app, Options& options) {
       app.add_flag("--dry-run", options.dry_run,
                    "only go through the plan with the cell's arm in mind; needs no --can"),
       app.add_flag("--step", options.step, "wait for Enter before every step of the plan"),
+      app.add_flag("--keys", options.keys, "p and Enter pauses the move, r and Enter goes on"),
       app.add_flag("--go-to-start", options.go_to_start, "move to the plan's start first"),
       app.add_option("--trace", options.trace, "inputs of every guarded move, to replay")};
   app.add_option("--can", options.can, "socketcan:can0, slcan:/dev/ttyACM0 or slcan://HOST:PORT");

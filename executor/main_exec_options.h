@@ -15,6 +15,7 @@ struct Options {
   int cpu = -1;
   bool go_to_start = false;
   bool step = false;  ///< by step
+  bool keys = false;
   bool dry_run = false;
   bool identify_payload = false;
   std::string identify_contact;  ///< direction

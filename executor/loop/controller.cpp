@@ -160,16 +160,35 @@ ControlTask::Turn Controller::wait_at_rest() {
   return {};
 }
 
+// A move knows no pause: its time runs slower, and it replays from a trace as it was. It still sees
+// every sample, and stops pressing at the first that is a touch; what it decides, it decides once
+// its time runs again.
+void Controller::pass_time() {
+  pace_.update(paused_.load(std::memory_order_relaxed), parameters_of_step().speeds, cycle_s());
+  const double share = pace_.share();
+  const std::int64_t cycle_ns = std::llround(1e9 * cycle_s());
+  const std::int64_t passed_ns =
+      share < 1.0 ? std::llround(share * static_cast<double>(cycle_ns)) : cycle_ns;
+  move_ns_ += std::max<std::int64_t>(1, passed_ns);
+}
+
 ControlTask::Turn Controller::run(const ArmFeedback& /*feedback*/) {
   if (waits_for_the_user()) return wait_at_rest();
   leave_free_air();
   GuardedMove::Input input;
-  input.time_ns = motion_ns();
+  pass_time();
+  input.time_ns = move_ns_;
   input.pose = tool_.seen(supervision().tool());
   input.wrench = supervision().wrench();
   input.wrench_fresh = supervision().wrench_usable();
   const GuardedMove::Output output = runner_.update(input);
   setpoint_ = output.setpoint;
+  if (const double pace = pace_.share(); pace < 1.0) {
+    // By the clock, not by the move's own time.
+    setpoint_.acceleration =
+        pace * pace * setpoint_.acceleration + pace_.rate() * setpoint_.velocity;
+    setpoint_.velocity *= pace;
+  }
   phase_ = output.phase;
   seen_ = input.pose;
   switch (runner_.status()) {
@@ -281,6 +300,8 @@ void Controller::write_motion(CycleRecord& r) {
   if (seen_) r.pose = data_of(*seen_);
   seen_.reset();
   r.phase = phase_;
+  r.move_ns = move_ns_;
+  r.pace = pace_.share();
   const bool awaits = waits_ && state() == State::kRunning;
   r.awaited_step = awaits ? static_cast<std::int32_t>(runner_.next_step()) : -1;
   r.step = r.moving ? static_cast<std::int32_t>(runner_.step()) : -1;

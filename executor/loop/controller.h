@@ -15,6 +15,7 @@
 #include "executor/loop/control_task.h"
 #include "executor/motion/compliant_tool.h"
 #include "executor/motion/joint_move.h"
+#include "executor/motion/pace.h"
 #include "executor/motion/plan_runner.h"
 #include "executor/motion/stop_profile.h"
 #include "executor/sensing/zero_watch.h"
@@ -44,6 +45,11 @@ class Controller : public ControlTask {
   /// The step that waits may begin; what is said while none waits is forgotten. Any thread.
   void allow_step() noexcept { allowed_.store(true, std::memory_order_relaxed); }
 
+  /// The move under way comes to rest by its own speed, along its own way, and stays compliant and
+  /// watched; or goes on. Its time stands meanwhile, so that no time limit passes. In other states
+  /// than kRunning nothing is paused. Any thread.
+  void pause(bool paused) noexcept { paused_.store(paused, std::memory_order_relaxed); }
+
   [[nodiscard]] const PlanRunner& runner() const noexcept { return runner_; }
   /// What is executed: the dry run's.
   [[nodiscard]] const Plan& plan() const noexcept { return plan_; }
@@ -61,6 +67,7 @@ class Controller : public ControlTask {
 
   [[nodiscard]] Turn start_approach();
   [[nodiscard]] bool waits_for_the_user() noexcept;
+  void pass_time();
   [[nodiscard]] Turn wait_at_rest();
   void leave_the_tool();
   void yield_here();
@@ -81,7 +88,10 @@ class Controller : public ControlTask {
   PlanRunner runner_;
 
   std::atomic<bool> allowed_{false};
-  bool waits_ = false;  ///< with the tool at rest, as compliant as ever, for allow_step()
+  std::atomic<bool> paused_{false};
+  Pace pace_;
+  std::int64_t move_ns_ = 0;  ///< the moves' own time
+  bool waits_ = false;        ///< with the tool at rest, as compliant as ever, for allow_step()
 
   int touch_samples_ = 0;
   GuardedMove::Setpoint setpoint_;

@@ -54,6 +54,9 @@ struct CycleRecord {
   bool move_started = false;  ///< the first input of a move
   bool wrench_fresh = false;  ///< a new sample, and not a distrusted one
   GuardedMove::Phase phase = GuardedMove::Phase::kDone;
+  /// The move's own time: it runs slower while the user pauses it, by at least 1 ns a cycle.
+  std::int64_t move_ns = 0;
+  double pace = 1.0;  ///< of that time against motion_ns; 0: paused
   std::int32_t step = -1;
   std::int32_t awaited_step = -1;  ///< that waits for the user's word; -1: none
   /// Reports that PlanRunner holds by now. They are written once and before this record, so who

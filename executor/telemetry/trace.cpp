@@ -41,7 +41,7 @@ void write_move(std::ostream& out, const CycleRecord& record, const Plan& plan) 
 }
 
 void write_input(std::ostream& out, const CycleRecord& record) {
-  out << "i " << record.motion_ns;
+  out << "i " << record.move_ns;
   write_doubles(out, record.pose.position_m);
   write_doubles(out, record.pose.orientation_wxyz);
   write_doubles(out, record.wrench);

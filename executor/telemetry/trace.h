@@ -6,6 +6,7 @@
 //   m STEP SIGNATURE TIMEOUT_US V(8)       a move begins, with these contacts held, at these speeds
 //                                          (SpeedLimits in its order; the dry run may slow a step)
 //   i TIME_NS P(3) Q(4, w first) W(6) FRESH SP(3) SQ(4)   an input, and the setpoint it led to
+//                                          (the move's own time, which stands while it is paused)
 //   r STEP OUTCOME SIGNATURE DECIDED_NS DURATION_NS       how the move of the step ended
 //   g                                      records were lost here; what follows cannot be replayed
 
