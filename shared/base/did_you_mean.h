@@ -10,7 +10,8 @@ namespace tenon {
 
 /// The word that is fewest slips away (a letter too many, too few, another, or two exchanged:
 /// optimal string alignment), where those are at most a third of its letters, or that only has more
-/// to its end, as a key's unit is. Numbers are no words. Of equals the first; empty where none is near.
+/// to its end, as a key's unit is. Numbers are no words. Of equals the first; empty where none is
+/// near.
 [[nodiscard]] std::string_view nearest_word(std::string_view written,
                                             std::span<const std::string_view> known);
 
