@@ -15,7 +15,7 @@
 # Who may use whom. One row per target: everything that it may link, and therefore include.
 # ---------------------------------------------------------------------------------------------
 set(TENON_LIBRARIES shared shared_canopen shared_system shared_drawing shared_eds shared_config lcmtypes
-    planner planner_belief planner_search planner_judge planner_report
+    planner planner_belief planner_search planner_judge planner_report planner_new_task
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
     hw_can hw_canopen hw_cia402 hw_arm hw_load hw_check
@@ -33,6 +33,7 @@ set(TENON_MAY_USE_planner       shared planner_belief planner_search planner_jud
 set(TENON_MAY_USE_planner_belief shared shared_system)
 set(TENON_MAY_USE_planner_search shared planner_belief)
 set(TENON_MAY_USE_planner_judge  shared planner_belief)
+set(TENON_MAY_USE_planner_new_task shared)
 set(TENON_MAY_USE_planner_report shared shared_drawing planner planner_belief planner_judge
                                  nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_executor                shared executor_motion)
@@ -69,7 +70,7 @@ set(TENON_MAY_USE_sim_evaluation_chain shared shared_system sim_evaluation sim_c
 # The mains compose. What is common to all of them:
 set(TENON_MAY_USE_any_main      shared shared_system Threads::Threads CLI11::CLI11
                                 nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_tenon-plan     planner planner_report sim_physics shared_config)
+set(TENON_MAY_USE_tenon-plan     planner planner_report planner_new_task sim_physics shared_config)
 set(TENON_MAY_USE_tenon-inspect  planner planner_report sim_physics shared_config)
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
                                  executor_loop executor_telemetry hw_can hw_arm hw_load shared_config)

@@ -13,6 +13,7 @@
 
 #include "planner/cell_fit.h"
 #include "planner/check/task_check.h"
+#include "planner/main_plan_new_task.h"
 #include "planner/planner.h"
 #include "planner/report/summary.h"
 #include "shared/base/error.h"
@@ -43,12 +44,37 @@ struct Arguments {
   double improve_s = 0.0;
   bool verbose = false;
   bool check = false;
+  NewTaskArguments new_task;
 };
+
+void describe_new_task(CLI::App& app, NewTaskArguments& a) {
+  auto* parts = app.add_option("--new-task", a.parts,
+                               "Write a task for two parts (STL, OBJ), PLUG SOCKET, in place of a "
+                               "plan; -o names its file")
+                    ->expected(2)
+                    ->option_text("PLUG SOCKET");
+  app.add_option("--goal", a.goal,
+                 "With --new-task: where the plug's file stands in the socket's, assembled, "
+                 "x y z [rx ry rz], m and rad (both files in one frame)")
+      ->expected(3, 6)
+      ->needs(parts);
+  app.add_option("--uniform-mm", a.uniform_mm,
+                 "With --new-task: the socket is anywhere within so much along each axis")
+      ->check(CLI::Range(0.01, 100.0))
+      ->needs(parts)
+      ->capture_default_str();
+  app.add_option("--uniform-deg", a.uniform_deg,
+                 "With --new-task: and turned by anything up to this; 0: not at all")
+      ->check(CLI::Range(0.0, 30.0))
+      ->needs(parts)
+      ->capture_default_str();
+}
 
 void describe(CLI::App& app, Arguments& a) {
   app.set_version_flag("--version", TENON_VERSION);
   app.footer("Example: tenon-plan planner/tasks/box_on_table_2d.yaml --start 1 -o plan.tnp");
-  app.add_option("task", a.task, "Task file")->required();
+  app.add_option("task", a.task, "Task file");
+  describe_new_task(app, a.new_task);
   app.add_option("--start", a.start, "Name of the start to plan from (the task's first)");
   app.add_option("--cell", a.cell, "Cell file: plan with what its arm and contact stiffness allow");
   std::vector<std::string> methods;
@@ -74,7 +100,8 @@ void describe(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(planner::kDrawsMin, planner::kDrawsMax))
       ->capture_default_str();
   app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
-  app.add_option("-o,--output", a.output, "Plan file to write; required but for --check");
+  app.add_option("-o,--output", a.output,
+                 "Plan file to write, or task file; required but for --check");
   app.add_flag("--check", a.check,
                "Plan nothing: say what of the task is understood, and what is wrong with it");
   app.add_option("--json", a.json, "File for the statistics, - for standard output");
@@ -183,6 +210,16 @@ int main(int argc, char** argv) {
     CLI::App app("Plans guarded moves that reach a goal although the start is uncertain.");
     describe(app, arguments);
     tenon::parse(app, argc, argv);
+    if (arguments.new_task.parts.empty() == arguments.task.empty()) {
+      throw InputError(arguments.task.empty()
+                           ? "no task: give a task file, or --new-task PLUG SOCKET"
+                           : "--new-task writes a task file: give none to plan");
+    }
+    if (arguments.task.empty()) {
+      if (arguments.output.empty()) throw InputError("--output is required; see --help");
+      arguments.new_task.output = arguments.output;
+      return write_new_task(arguments.new_task);
+    }
     return run(arguments);
   });
 }

@@ -6,9 +6,9 @@
 #include "shared/base/fnv.h"
 #include "shared/base/text.h"
 #include "shared/config/files.h"
+#include "shared/config/part_file.h"
 #include "shared/geometry/extrusion.h"
 #include "shared/geometry/mesh_check.h"
-#include "shared/geometry/mesh_file.h"
 #include "shared/task/ring.h"
 
 namespace tenon::config {
@@ -58,15 +58,6 @@ void set_solid(Shape& shape, std::shared_ptr<const Solid> solid) {
   shape.solid = std::move(solid);
 }
 
-/// By what the file's name ends in.
-TriangleMesh parse(const std::filesystem::path& file, const std::string& bytes, double scale_m) {
-  std::string kind = file.extension().string();
-  for (char& c : kind) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  if (kind == ".stl") return read_stl(bytes, scale_m);
-  if (kind == ".obj") return read_obj(bytes, scale_m);
-  throw InputError("must be an STL or OBJ file: its name must end in .stl or .obj");
-}
-
 }  // namespace
 
 std::shared_ptr<const Solid> ShapeReader::read_mesh(const Value& value) {
@@ -77,9 +68,7 @@ std::shared_ptr<const Solid> ShapeReader::read_mesh(const Value& value) {
   if (solid) return solid;
   const std::string bytes = read_file(file);
   try {
-    TriangleMesh mesh = parse(file, bytes, scale);
-    check_mesh(mesh);
-    solid = std::make_shared<const Solid>(std::move(mesh));
+    solid = std::make_shared<const Solid>(parse_part(file, bytes, scale));
   } catch (const InputError& error) {
     throw InputError(file.string() + ": " + error.what());
   }

@@ -1,0 +1,36 @@
+#pragma once
+// How one part goes into another: what two solids and the place of one in the other tell. Pure.
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "shared/geometry/solid.h"
+#include "shared/math/pose.h"
+
+namespace tenon::planner {
+
+struct PartFit {
+  double overlap_m = 0.0;  ///< as assembled; 0 where they are free of each other
+  /// The straight way out, in the frame of the socket's file; absent where there is none.
+  std::optional<Vector3> way_out;
+  double depth_m = 0.0;  ///< along it until the plug is free to move aside
+  double clear_m = 0.0;  ///< along it until the plug is past everything
+  /// What the plug can move aside, both ways together, half-way in: across the way out, in the axes
+  /// of a frame whose z is the way out (frame_along()).
+  std::array<double, 2> play_m{};
+  /// Turned about the way out it would not go in.
+  bool yaw_matters = false;
+};
+
+/// Overlaps up to this are parts that touch, m.
+inline constexpr double kTouching_m = 50e-6;
+
+/// @param X_SP the plug's file in the socket's
+[[nodiscard]] PartFit fit_of(const std::shared_ptr<const Solid>& plug,
+                             const std::shared_ptr<const Solid>& socket, const Pose& X_SP);
+
+/// The rotation of a frame whose z is a direction; none for z itself.
+[[nodiscard]] Eigen::Quaterniond frame_along(const Vector3& way);
+
+}  // namespace tenon::planner

@@ -1,0 +1,193 @@
+#include "planner/new_task/task_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "shared/base/text.h"
+
+namespace tenon::planner {
+namespace {
+
+// The tip stands still so far from what it goes against, so that it is free there.
+constexpr double kFreeMax_m = 1e-3;
+constexpr double kFreeOfDepth = 0.1;
+// How near to the assembled place is inserted.
+constexpr double kToleranceMax_m = 2e-3;
+constexpr double kToleranceOfDepth = 0.2;
+constexpr double kToleranceMin_m = 5e-4;
+// The plug starts so far above everything, whatever its error.
+constexpr double kAbove_m = 5e-3;
+
+/// Rounded to a micrometre: rests of rounding are no part of a task.
+std::string list(const Vector3& v, double unit = 1e-6) {
+  const auto tidy = [&](double x) { return unit * std::round(x / unit) + 0.0; };
+  return format("[%.9g, %.9g, %.9g]", tidy(v.x()), tidy(v.y()), tidy(v.z()));
+}
+
+std::string pose_text(const Pose& pose) {
+  const Vector3 turn_rad = rotation_vector(pose.orientation);
+  const std::string position = "{position_m: " + list(pose.position_m);
+  if (turn_rad.norm() < 1e-9) return position + "}";
+  return position + ", rotation_rad: " + list(turn_rad, 1e-9) + "}";
+}
+
+/// The lowest place of the plug along the way that it goes in, amid its box, in the socket's file.
+Vector3 tip_m(const NewTask& task) {
+  const Eigen::Quaterniond frame = frame_along(*task.fit.way_out);
+  const Pose X_FP = compose(inverse({Vector3::Zero(), frame}), task.X_SP);
+  Vector3 low_m = Vector3::Constant(1e9);
+  Vector3 high_m = -low_m;
+  for (const Vector3& point : task.plug.solid->mesh().points_m) {
+    const Vector3 there_m =
+        X_FP.position_m + X_FP.orientation * (point + task.plug.solid->centre_m());
+    low_m = low_m.cwiseMin(there_m);
+    high_m = high_m.cwiseMax(there_m);
+  }
+  return frame * Vector3(0.5 * (low_m.x() + high_m.x()), 0.5 * (low_m.y() + high_m.y()), low_m.z());
+}
+
+/// What the file says in numbers.
+struct Numbers {
+  Pose X_TS;  ///< the socket's file in the task's frame
+  Pose X_GP;  ///< the plug's file in the tool's
+  double goal_z_m = 0.0;
+  double start_z_m = 0.0;
+  double tolerance_m = 0.0;
+  double sigma_m = 0.0;
+  double sigma_rad = 0.0;
+};
+
+Numbers numbers_of(const NewTask& task) {
+  const Eigen::Quaterniond frame = frame_along(*task.fit.way_out);
+  const Vector3 tip = tip_m(task);
+  Numbers n;
+  n.X_TS = inverse({tip, frame});
+  n.X_GP = compose(n.X_TS, task.X_SP);
+  n.goal_z_m = std::min(kFreeMax_m, kFreeOfDepth * task.fit.depth_m);
+  n.tolerance_m =
+      std::clamp(kToleranceOfDepth * task.fit.depth_m, kToleranceMin_m, kToleranceMax_m);
+  n.sigma_m = task.uniform_m / std::numbers::sqrt3;
+  n.sigma_rad = task.uniform_rad / std::numbers::sqrt3;
+  // A turned part reaches deeper by its own size.
+  const double turned_m = 3.0 * n.sigma_rad * task.plug.solid->size_m().maxCoeff();
+  n.start_z_m = task.fit.clear_m + 3.0 * n.sigma_m + turned_m + kAbove_m;
+  return n;
+}
+
+std::string part_line(const char* what, const NewPart& part) {
+  return format(
+      "%s: %s, taken to be in %s (its longest side is %.4g), %.4g x %.4g x %.4g mm, "
+      "%zu triangles, closed\n",
+      what, part.file.c_str(), part.scale_m == 1.0 ? "metres" : "millimetres", part.longest_raw,
+      1e3 * part.solid->size_m().x(), 1e3 * part.solid->size_m().y(),
+      1e3 * part.solid->size_m().z(), part.solid->mesh().triangles.size());
+}
+
+std::string commented(const std::string& lines) {
+  std::string text = "# ";
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += lines[i];
+    if (lines[i] == '\n' && i + 1 < lines.size()) text += "# ";
+  }
+  return text;
+}
+
+std::string shapes_text(const NewTask& task, const Numbers& n) {
+  const auto shape = [](const char* name, const NewPart& part, const Pose& pose) {
+    return format("  - name: %s\n    mesh: {file: \"%s\", scale: %g}\n    pose: %s\n", name,
+                  part.file.c_str(), part.scale_m, pose_text(pose).c_str());
+  };
+  return "# In the tool's frame: its origin is the tip of the plug.\nheld:\n" +
+         shape("plug", task.plug, n.X_GP) +
+         "\n# In the task's frame: z is the way out, its origin where the plug's tip stands "
+         "assembled.\nenvironment:\n" +
+         shape("socket", task.socket, n.X_TS);
+}
+
+std::string start_text(const NewTask& task, const Numbers& n) {
+  const bool turns = n.sigma_rad > 0.0;
+  std::string text = format(
+      "\n# The start, above everything. Anything within %.3g mm an axis is as likely: a standard "
+      "deviation of\n# that over sqrt(3). Three of them reach the corners of that cube.\n"
+      "starts:\n  - name: \"1\"\n    pose: %s\n    sigma_m: [%.6g, %.6g, %.6g]\n",
+      1e3 * task.uniform_m, pose_text({{0.0, 0.0, n.start_z_m}, {1.0, 0.0, 0.0, 0.0}}).c_str(),
+      n.sigma_m, n.sigma_m, n.sigma_m);
+  if (turns) {
+    text += format(task.fit.yaw_matters ? "    sigma_rad: [%.6g, %.6g, %.6g]\n"
+                                        : "    sigma_rad: [%.6g, %.6g]\n",
+                   n.sigma_rad, n.sigma_rad, n.sigma_rad);
+  }
+  return text + "particle_sigmas: 3\n";
+}
+
+std::string goal_text(const NewTask& task, const Numbers& n) {
+  const double aside_m =
+      2.0 * n.tolerance_m + *std::max_element(task.fit.play_m.begin(), task.fit.play_m.end());
+  return format(
+      "\n# Clear of the bottom by %.3g mm.\ngoal:\n  pose: {position_m: [0, 0, %.6g]}\n"
+      "  tolerance_m: %.6g\n  # The tip is as deep as assembled, within the tolerance.\n"
+      "  inserted: {box_m: [%.6g, %.6g, %.6g], pose: {position_m: [0, 0, %.6g]}}\n",
+      1e3 * n.goal_z_m, n.goal_z_m, n.tolerance_m, aside_m, aside_m, 2.0 * n.tolerance_m,
+      n.goal_z_m);
+}
+
+constexpr const char* kMotion = R"(
+# tenon-plan --cell lowers the speeds to what the cell's arm can stop from.
+speeds:
+  approach_mps: 0.10
+  contact_mps: 0.05
+
+# A contact counts above force_on_N, is held with force_keep_N, and is gone below force_off_N.
+contact:
+  force_on_N: 9.0
+  force_keep_N: 3.0
+  force_off_N: 1.5
+  debounce_s: 0.006
+  force_limit_N: 20.0
+)";
+
+constexpr const char* kPhysics = R"(
+# The stiffness is that of contact, sensor and arm in series; --cell puts the cell's in its place.
+physics:
+  friction: {low: 0.1, nominal: 0.3, high: 0.6}
+  contact_stiffness_Npm: 5e4
+)";
+
+std::string compliance_text(const NewTask& task, bool turns) {
+  std::string text = "\n# How the arm yields.\ncompliance:\n  axes: [x, y, z";
+  if (turns) text += task.fit.yaw_matters ? ", rx, ry, rz" : ", rx, ry";
+  text += "]\n  mass_kg: 2.0\n  damping_Nspm: 1500.0\n  stiffness_Npm: 1000.0\n";
+  if (turns) text += "  inertia_kgm2: 0.02\n  damping_Nmspr: 2.0\n  stiffness_Nmpr: 5.0\n";
+  return text;
+}
+
+}  // namespace
+
+std::string findings(const NewTask& task) {
+  const PartFit& fit = task.fit;
+  std::string text = part_line("plug", task.plug) + part_line("socket", task.socket);
+  if (!fit.way_out) return text;
+  const Vector3 in = -*fit.way_out;
+  text += format("insertion: along (%.3g, %.3g, %.3g) of the socket's file, %.2f mm deep\n",
+                 in.x() + 0.0, in.y() + 0.0, in.z() + 0.0, 1e3 * fit.depth_m);
+  text += format(
+      "clearance: the plug can move by %.3f mm along x and %.3f mm along y, half-way "
+      "in\n",
+      1e3 * fit.play_m[0], 1e3 * fit.play_m[1]);
+  text += fit.yaw_matters ? "yaw: matters, turned about the way in the plug does not fit\n"
+                          : "yaw: does not matter\n";
+  return text;
+}
+
+std::string task_text(const NewTask& task) {
+  const Numbers n = numbers_of(task);
+  const bool turns = n.sigma_rad > 0.0;
+  const char* rotations = task.fit.yaw_matters ? ", rx, ry, rz" : ", rx, ry";
+  return "# Written by tenon-plan --new-task from two parts. Measured:\n#\n" +
+         commented(findings(task)) + "\nname: " + task.name + "\ncoordinates: [x, y, z" +
+         (turns ? rotations : "") + "]\n\n" + shapes_text(task, n) + start_text(task, n) +
+         goal_text(task, n) + kMotion + compliance_text(task, turns) + kPhysics;
+}
+
+}  // namespace tenon::planner

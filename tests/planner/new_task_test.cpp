@@ -1,0 +1,143 @@
+// A task from two part files: what is measured of them, and that the task is one.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "planner/new_task/part_fit.h"
+#include "planner/new_task/task_text.h"
+#include "shared/config/load.h"
+#include "shared/config/part_file.h"
+#include "shared/geometry/extrusion.h"
+#include "sim/physics/rollout/ode_rollout.h"
+#include "tests/support/example_parts.h"
+#include "tests/support/meshes.h"
+#include "tests/support/scratch_folder.h"
+
+namespace tenon::planner {
+namespace {
+
+std::shared_ptr<const Solid> solid_of(TriangleMesh mesh, const Pose& pose = {}) {
+  for (Vector3& point : mesh.points_m) point = pose.position_m + pose.orientation * point;
+  return std::make_shared<const Solid>(std::move(mesh));
+}
+
+TriangleMesh round_peg(double radius_m) {
+  const tests::Profile profile = tests::round_profile(radius_m, 48);
+  return tests::lofted({{profile, 0.0}, {profile, 40e-3}});
+}
+
+/// A round hole of 20 mm in a round block.
+TriangleMesh round_socket(double radius_m) {
+  const tests::Profile hole = tests::round_profile(radius_m, 48);
+  const tests::Profile block = tests::round_profile(25e-3, 48);
+  return tests::lofted({{block, -5e-3}, {block, 20e-3}, {hole, 20e-3}, {hole, 0.0}});
+}
+
+TEST(NewTask, MeasuresHowAKeyedPegGoesIn) {
+  const auto parts = tests::example_parts();
+  const PartFit fit =
+      fit_of(solid_of(parts.at("keyed_peg.stl")), solid_of(parts.at("keyed_socket.stl")), {});
+  ASSERT_TRUE(fit.way_out.has_value());
+  EXPECT_LT((*fit.way_out - Vector3::UnitZ()).norm(), 1e-9);
+  EXPECT_NEAR(fit.depth_m, 30e-3, 1.5e-3);  // less what the chamfers leave free
+  EXPECT_NEAR(fit.play_m[0], 1e-3, 0.02e-3);
+  EXPECT_NEAR(fit.play_m[1], 1e-3, 0.02e-3);
+  EXPECT_TRUE(fit.yaw_matters);
+}
+
+TEST(NewTask, ARoundPegMayTurn) {
+  const PartFit fit = fit_of(solid_of(round_peg(10e-3)), solid_of(round_socket(10.3e-3)), {});
+  ASSERT_TRUE(fit.way_out.has_value());
+  EXPECT_FALSE(fit.yaw_matters);
+  EXPECT_NEAR(fit.depth_m, 20e-3, 0.6e-3);
+  EXPECT_NEAR(fit.play_m[0], 0.6e-3, 0.05e-3);
+}
+
+TEST(NewTask, TheWayOutNeedNotBeUp) {
+  const Pose askew{{0.01, -0.02, 0.3}, rotation_of({0.0, 2.0, 0.0})};
+  // The plug is in its own frame; where it stands in the socket's is said.
+  const PartFit fit =
+      fit_of(solid_of(round_peg(10e-3)), solid_of(round_socket(10.3e-3), askew), askew);
+  ASSERT_TRUE(fit.way_out.has_value());
+  EXPECT_LT((*fit.way_out - askew.orientation * Vector3::UnitZ()).norm(), 1e-6);
+  EXPECT_NEAR(fit.depth_m, 20e-3, 0.6e-3);
+}
+
+TEST(NewTask, SaysWhatOverlapsAndWhatIsLockedIn) {
+  const PartFit tight = fit_of(solid_of(round_peg(10.5e-3)), solid_of(round_socket(10.3e-3)), {});
+  EXPECT_NEAR(tight.overlap_m, 0.2e-3, 0.05e-3);
+  EXPECT_FALSE(tight.way_out.has_value());
+
+  // A ball in a hollow.
+  TriangleMesh hollow = tests::turned_about(tests::box_mesh({20e-3, 20e-3, 20e-3}));
+  const auto box = solid_of(tests::together(tests::box_mesh({40e-3, 40e-3, 40e-3}), hollow));
+  const PartFit locked = fit_of(solid_of(tests::box_mesh({15e-3, 15e-3, 15e-3})), box, {});
+  EXPECT_EQ(locked.overlap_m, 0.0);
+  EXPECT_FALSE(locked.way_out.has_value());
+}
+
+/// The keyed peg's files, and the task that is written for them.
+struct Written {
+  explicit Written(double uniform_rad) {
+    const auto parts = tests::example_parts();
+    const auto peg = folder.put("peg.stl", tests::binary_stl(parts.at("keyed_peg.stl"), 1e-3));
+    const auto socket = folder.put("socket.obj", tests::obj(parts.at("keyed_socket.stl"), 1.0));
+    const config::PartFile plug_file = config::load_part(peg);
+    const config::PartFile socket_file = config::load_part(socket);
+    task.name = "new";
+    task.plug = {"peg.stl", plug_file.scale_m, plug_file.longest_raw, plug_file.solid};
+    task.socket = {"socket.obj", socket_file.scale_m, socket_file.longest_raw, socket_file.solid};
+    task.uniform_rad = uniform_rad;
+    task.fit = fit_of(task.plug.solid, task.socket.solid, task.X_SP);
+    file = folder.put("new.yaml", task_text(task));
+  }
+
+  tests::ScratchFolder folder;
+  NewTask task;
+  std::filesystem::path file;
+};
+
+TEST(NewTask, IsATaskWithFreeStartAndGoal) {
+  const Written written(0.0);
+  EXPECT_EQ(written.task.plug.scale_m, 1e-3);
+  EXPECT_EQ(written.task.socket.scale_m, 1.0);
+  const Task task = load_task(written.file);
+  EXPECT_EQ(task.coordinates, 0b000111);
+  sim::OdeRollout physics(task);
+  EXPECT_FALSE(physics.in_collision(task.goal));
+  const Start& start = task.starts.front();
+  for (const double x : {-1.0, 1.0}) {
+    for (const double z : {-1.0, 1.0}) {
+      Vector6 off = Vector6::Zero();
+      off[0] = x * task.particle_sigmas * start.sigma[0];
+      off[2] = z * task.particle_sigmas * start.sigma[2];
+      EXPECT_FALSE(physics.in_collision(displaced(start.pose, off)));
+    }
+  }
+  // A side of the hole is where it was: beyond the play it is met.
+  Vector6 aside = Vector6::Zero();
+  aside[0] = 0.9e-3;
+  EXPECT_TRUE(physics.in_collision(displaced(task.goal, aside)));
+  // Three standard deviations along each axis reach the corners of the cube.
+  EXPECT_NEAR(task.particle_sigmas * start.sigma[0], std::numbers::sqrt3 * 2e-3, 1e-8);
+}
+
+TEST(NewTask, TurnsWhereAskedTo) {
+  const Written written(0.05);
+  const Task task = load_task(written.file);
+  EXPECT_EQ(task.coordinates, 0b111111);
+  EXPECT_GT(task.starts.front().sigma[5], 0.0);
+}
+
+TEST(NewTask, SaysWhatItMeasured) {
+  const Written written(0.0);
+  const std::string said = findings(written.task);
+  EXPECT_NE(said.find("peg.stl, taken to be in millimetres"), std::string::npos) << said;
+  EXPECT_NE(said.find("socket.obj, taken to be in metres"), std::string::npos) << said;
+  EXPECT_NE(said.find("insertion: along (0, 0, -1)"), std::string::npos) << said;
+  EXPECT_NE(said.find("yaw: matters"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace tenon::planner
