@@ -18,7 +18,7 @@ set(TENON_LIBRARIES shared shared_canopen shared_system shared_drawing shared_ed
     planner planner_belief planner_search planner_judge planner_report planner_new_task
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
-    hw_can hw_canopen hw_cia402 hw_arm hw_load hw_check
+    hw_can hw_canopen hw_cia402 hw_sensors hw_arm hw_load hw_check
     sim_physics sim_cell sim_evaluation sim_evaluation_chain)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
@@ -55,7 +55,8 @@ set(TENON_MAY_USE_executor_telemetry      shared shared_system executor_states e
 set(TENON_MAY_USE_hw_can        shared shared_system)
 set(TENON_MAY_USE_hw_canopen    shared shared_canopen)
 set(TENON_MAY_USE_hw_cia402     shared shared_canopen)
-set(TENON_MAY_USE_hw_arm        shared shared_canopen hw_canopen hw_cia402)
+set(TENON_MAY_USE_hw_sensors    shared)
+set(TENON_MAY_USE_hw_arm        shared shared_canopen hw_canopen hw_cia402 hw_sensors)
 set(TENON_MAY_USE_hw_load       shared hw_arm)
 set(TENON_MAY_USE_hw_check      shared shared_eds hw_canopen hw_arm hw_load)
 set(TENON_MAY_USE_sim_physics    shared ODE::ODE)

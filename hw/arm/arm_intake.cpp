@@ -1,8 +1,6 @@
 #include "hw/arm/arm_intake.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <span>
 
 #include "hw/arm/cob_ids.h"
@@ -10,23 +8,19 @@
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/object_setting.h"
 #include "hw/cia402/drive_state.h"
-#include "shared/base/bytes.h"
 #include "shared/canopen/constants.h"
 
 namespace tenon::hw {
-namespace {
-
-constexpr std::uint8_t kBothHalves = 3;
-
-}  // namespace
 
 ArmIntake::ArmIntake(const Robot& robot, std::span<JointChannel> joints,
-                     ArmSupervision& supervision, ArmCounters& counters)
+                     WrenchSource& wrench_source, ArmSupervision& supervision,
+                     ArmCounters& counters)
     : joints_(joints),
-      sensor_(robot.sensor),
+      sensor_node_(robot.sensor.node),
       other_master_(robot),
       supervision_(supervision),
-      counters_(counters) {
+      counters_(counters),
+      wrench_intake_(wrench_source, robot.sensor) {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     feedback_ids_[i] = joint_feedback_cob_id(robot, i);
   }
@@ -36,17 +30,16 @@ void ArmIntake::reset() noexcept {
   for (JointChannel& joint : joints_) {
     joint.reset();
   }
-  pairing_.reset();
+  wrench_intake_.reset();
   limit_ = {};
   feedback_ = {};
   cycle_open_ = wrench_late_ = false;
-  halves_seen_ = 0;
 }
 
 void ArmIntake::forget_freshness() noexcept {
   feedback_.joints_fresh = 0;
   feedback_.joints_off = 0;
-  halves_seen_ = 0;
+  wrench_intake_.forget_freshness();
 }
 
 void ArmIntake::open_cycle(std::int64_t now_ns, CanBus& bus) noexcept {
@@ -69,7 +62,7 @@ bool ArmIntake::close_cycle() noexcept {
 
 bool ArmIntake::complete() const noexcept {
   return cycle_open_ && feedback_.joints_fresh == (1u << joints_.size()) - 1u &&
-         halves_seen_ == kBothHalves;
+         wrench_intake_.both_halves_seen();
 }
 
 int ArmIntake::drain(std::int64_t now_ns, CanBus& bus) noexcept {
@@ -102,9 +95,7 @@ bool ArmIntake::take_process_data(const CanFrame& frame) noexcept {
   if (frame.extended || frame.remote) {
     return false;
   }
-  const bool force = frame.id == kForceCobId;
-  if (force || frame.id == kTorqueCobId) {
-    take_wrench_half(force ? WrenchPairing::Half::kForce : WrenchPairing::Half::kTorque, frame);
+  if (take_wrench_frame(frame)) {
     return true;
   }
   const auto ids = std::span(feedback_ids_).first(joints_.size());
@@ -126,50 +117,39 @@ bool ArmIntake::take_process_data(const CanFrame& frame) noexcept {
   return true;
 }
 
-void ArmIntake::take_wrench_half(WrenchPairing::Half half, const CanFrame& frame) noexcept {
-  if (frame.length != 8) {
-    ++counters_.malformed_frames;
-    supervision_.take_wrong_length(sensor_.node, frame.length);
-    return;
+bool ArmIntake::take_wrench_frame(const CanFrame& frame) noexcept {
+  const std::uint64_t torn_before = wrench_intake_.torn();
+  switch (wrench_intake_.take(frame)) {
+    case WrenchSource::Taken::kForeign:
+      return false;
+    case WrenchSource::Taken::kMalformed:
+      ++counters_.malformed_frames;
+      supervision_.take_wrong_length(sensor_node_, frame.length);
+      return true;
+    case WrenchSource::Taken::kHalf:
+      break;
   }
-  if (half == WrenchPairing::Half::kForce) judge_force(frame);
+  if (wrench_intake_.force_N()) judge_force(*wrench_intake_.force_N());
   counters_.late_frames += cycle_open_ ? 0 : 1;
-  halves_seen_ = static_cast<std::uint8_t>(halves_seen_ | (1u << static_cast<unsigned>(half)));
-  const std::uint64_t torn_before = pairing_.torn();
-  const auto sample = pairing_.process(half, frame);
-  counters_.wrench_halves_torn += pairing_.torn() - torn_before;
-  if (sample && !sample->repeated) {
-    take_wrench(*sample);
-  }
+  counters_.wrench_halves_torn += wrench_intake_.torn() - torn_before;
+  if (wrench_intake_.sample()) take_wrench(*wrench_intake_.sample());
+  return true;
 }
 
 // The force alone tells: its other half, and whether it is new, need not be waited for.
-void ArmIntake::judge_force(const CanFrame& frame) noexcept {
-  const std::span<const std::uint8_t> bytes(frame.data);
-  Vector3 force_N;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    force_N[static_cast<Eigen::Index>(axis)] =
-        sensor_.force_per_count_N * load_le<std::int16_t>(bytes.subspan(2 * axis));
-  }
+void ArmIntake::judge_force(const Vector3& force_N) noexcept {
   const double external_N = (force_N - limit_.unloaded_N).norm();
   if (external_N > limit_.limit_N) supervision_.force_exceeded(external_N);
 }
 
-void ArmIntake::take_wrench(const WrenchPairing::Sample& sample) noexcept {
-  for (std::size_t i = 0; i < 6; ++i) {
-    const int counts = sample.counts[i];
-    const double scale = i < 3 ? sensor_.force_per_count_N : sensor_.torque_per_count_Nm;
-    const double range = i < 3 ? sensor_.force_range_N : sensor_.torque_range_Nm;
-    const double value = counts * scale;
-    // A range of 0 is not given; the 16 bits still end somewhere.
-    if (std::abs(counts) >= 32767 || (range > 0.0 && std::abs(value) >= range)) {
-      const auto sub = static_cast<std::uint8_t>(i + 1);
-      supervision_.raise({ArmFaultKind::kSensorInvalid, sensor_.node,
-                          canopen::object_of(tenon::canopen::kForceInputs, sub),
-                          static_cast<std::uint16_t>(counts)});
-    }
-    feedback_.wrench[static_cast<Eigen::Index>(i)] = value;
+void ArmIntake::take_wrench(const WrenchIntake::Sample& sample) noexcept {
+  if (const auto& saturated = wrench_intake_.saturated()) {
+    const auto sub = static_cast<std::uint8_t>(saturated->axis + 1);
+    supervision_.raise({ArmFaultKind::kSensorInvalid, sensor_node_,
+                        canopen::object_of(tenon::canopen::kForceInputs, sub),
+                        static_cast<std::uint16_t>(saturated->raw)});
   }
+  feedback_.wrench = sample.wrench;
   wrench_late_ = !cycle_open_;
   feedback_.wrench_counter = sample.counter;
   feedback_.wrench_fresh = true;

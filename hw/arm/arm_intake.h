@@ -7,7 +7,8 @@
 //   drain()       takes in what has come, until feedback() is complete()
 //   close_cycle() what comes from now on is late
 //
-// Real-time, no clock; one thread. Joints, supervision and counters outlive it.
+// Real-time, no clock; one thread. Joints, the wrench's source, supervision and counters outlive
+// it.
 
 #include <array>
 #include <cstddef>
@@ -18,10 +19,11 @@
 #include "hw/arm/arm_supervision.h"
 #include "hw/arm/joint_channel.h"
 #include "hw/arm/other_master.h"
-#include "hw/arm/wrench_pairing.h"
+#include "hw/sensors/wrench_intake.h"
 #include "shared/cell/robot.h"
 #include "shared/ports/arm.h"
 #include "shared/ports/can_bus.h"
+#include "shared/ports/wrench_source.h"
 
 namespace tenon::hw {
 
@@ -30,8 +32,8 @@ class ArmIntake {
   /// Bounds a cycle's work however much arrives.
   static constexpr int kMaxFramesPerCall = 256;
 
-  ArmIntake(const Robot& robot, std::span<JointChannel> joints, ArmSupervision& supervision,
-            ArmCounters& counters);
+  ArmIntake(const Robot& robot, std::span<JointChannel> joints, WrenchSource& wrench_source,
+            ArmSupervision& supervision, ArmCounters& counters);
 
   /// Forgets all that was heard.
   void reset() noexcept;
@@ -55,23 +57,22 @@ class ArmIntake {
  private:
   void forget_freshness() noexcept;
   [[nodiscard]] bool take_process_data(const CanFrame& frame) noexcept;
-  void take_wrench_half(WrenchPairing::Half half, const CanFrame& frame) noexcept;
-  void judge_force(const CanFrame& frame) noexcept;
-  void take_wrench(const WrenchPairing::Sample& sample) noexcept;
+  [[nodiscard]] bool take_wrench_frame(const CanFrame& frame) noexcept;
+  void judge_force(const Vector3& force_N) noexcept;
+  void take_wrench(const WrenchIntake::Sample& sample) noexcept;
 
   const std::span<JointChannel> joints_;
   std::array<std::uint32_t, kMaxJoints> feedback_ids_{};
-  const ForceTorqueSensor sensor_;
+  const std::uint8_t sensor_node_;
   const OtherMaster other_master_;
   ArmSupervision& supervision_;
   ArmCounters& counters_;
 
   ForceLimit limit_;
-  WrenchPairing pairing_;
+  WrenchIntake wrench_intake_;
   ArmFeedback feedback_;
   bool cycle_open_ = false;
-  bool wrench_late_ = false;      ///< one has come since the last cycle closed
-  std::uint8_t halves_seen_ = 0;  ///< this cycle: bit 0 force, bit 1 torque
+  bool wrench_late_ = false;  ///< one has come since the last cycle closed
 };
 
 }  // namespace tenon::hw

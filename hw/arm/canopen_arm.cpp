@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "hw/arm/cob_ids.h"
 #include "hw/arm/node_settings.h"
 
 namespace tenon::hw {
@@ -24,8 +25,9 @@ CanopenArm::CanopenArm(const Robot& robot, CanBus& bus)
     : bus_(bus),
       bring_up_(checked(robot)),
       joints_(channels_of(robot)),
+      wrench_source_(robot.sensor, {kForceCobId, kTorqueCobId}),
       supervision_(robot, joints_, counters_),
-      intake_(robot, joints_, supervision_, counters_),
+      intake_(robot, joints_, wrench_source_, supervision_, counters_),
       output_(robot, bus, joints_, supervision_, counters_) {}
 
 bool CanopenArm::prepare(std::int64_t now_ns) {

@@ -30,6 +30,7 @@
 #include "hw/arm/arm_supervision.h"
 #include "hw/arm/bring_up.h"
 #include "hw/arm/joint_channel.h"
+#include "hw/sensors/canopen_wrench_source.h"
 #include "shared/cell/robot.h"
 #include "shared/ports/arm.h"
 #include "shared/ports/can_bus.h"
@@ -68,6 +69,7 @@ class CanopenArm : public Arm {
   BringUp bring_up_;
   Counters counters_;
   std::vector<JointChannel> joints_;  ///< of a fixed size: the parts below look into it
+  CanopenWrenchSource wrench_source_;
   ArmSupervision supervision_;
   ArmIntake intake_;
   ArmOutput output_;

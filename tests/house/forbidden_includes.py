@@ -18,7 +18,7 @@ ALLOWED_TO_ALL = "shared/base/error.h"
 PLANNER = {"shared", "planner_belief", "planner_search", "planner_judge"}
 CONTROL = {"shared", "executor_faults", "executor_states", "executor_record", "executor_motion", "executor_sensing"}
 LOOP = CONTROL | {"executor_dry_run"}
-HW_ARM = {"shared", "shared_canopen", "hw_canopen", "hw_cia402"}
+HW_ARM = {"shared", "shared_canopen", "hw_canopen", "hw_cia402", "hw_sensors"}
 MAY_INCLUDE = {
     "shared": set(),
     "shared_canopen": {"shared"},
@@ -50,6 +50,7 @@ MAY_INCLUDE = {
     "hw_can": {"shared", "shared_system"},
     "hw_canopen": {"shared", "shared_canopen"},
     "hw_cia402": {"shared", "shared_canopen"},
+    "hw_sensors": {"shared"},
     "hw_arm": HW_ARM,
     "hw_load": HW_ARM | {"hw_arm"},
     "hw_check": HW_ARM | {"shared_eds", "hw_arm", "hw_load"},

@@ -7,6 +7,7 @@
 #include "hw/arm/arm_intake.h"
 #include "hw/arm/arm_output.h"
 #include "hw/arm/arm_supervision.h"
+#include "hw/sensors/canopen_wrench_source.h"
 #include "sim/cell/bus/virtual_bus.h"
 #include "tests/hw/gantry_on_bus.h"
 
@@ -58,7 +59,8 @@ class ArmParts : public testing::Test {
     return channels;
   }();
   ArmSupervision supervision{robot, joints, counters};
-  ArmIntake intake{robot, joints, supervision, counters};
+  CanopenWrenchSource wrench_source{robot.sensor, {0x181, 0x182}};
+  ArmIntake intake{robot, joints, wrench_source, supervision, counters};
   ArmOutput output{robot, master, joints, supervision, counters};
 };
 

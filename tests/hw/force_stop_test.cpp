@@ -13,6 +13,7 @@
 #include "hw/arm/arm_intake.h"
 #include "hw/arm/arm_output.h"
 #include "hw/arm/arm_supervision.h"
+#include "hw/sensors/canopen_wrench_source.h"
 #include "shared/base/random.h"
 #include "shared/config/load.h"
 #include "sim/cell/bus/virtual_bus.h"
@@ -53,7 +54,8 @@ struct Parts {
   ArmCounters counters;
   std::vector<JointChannel> joints;
   ArmSupervision supervision{robot, joints, counters};
-  ArmIntake intake{robot, joints, supervision, counters};
+  CanopenWrenchSource wrench_source{robot.sensor, {0x181, 0x182}};
+  ArmIntake intake{robot, joints, wrench_source, supervision, counters};
   ArmOutput output{robot, master, joints, supervision, counters};
 };
 

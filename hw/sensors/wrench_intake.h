@@ -1,0 +1,59 @@
+#pragma once
+// Judges what a force/torque sensor sends, whichever it is: halves become samples, torn and
+// repeated ones are none, and a value at the end of its range is named. Real-time, no clock; one
+// thread. The source must outlive it.
+
+#include <cstdint>
+#include <optional>
+
+#include "hw/sensors/wrench_pairing.h"
+#include "shared/cell/robot.h"
+#include "shared/ports/wrench_source.h"
+
+namespace tenon::hw {
+
+class WrenchIntake {
+ public:
+  struct Sample {
+    Vector6 wrench = Vector6::Zero();  ///< sensor axes, N and Nm, raw
+    std::uint16_t counter = 0;
+  };
+  struct Saturated {
+    std::uint8_t axis = 0;  ///< 0 to 5: fx fy fz tx ty tz
+    std::int16_t raw = 0;   ///< the raw value in that place
+  };
+
+  WrenchIntake(WrenchSource& source, const ForceTorqueSensor& sensor)
+      : source_(source), sensor_(sensor) {}
+
+  /// Forgets all that was heard.
+  void reset() noexcept;
+  /// From now on halves are of another cycle.
+  void forget_freshness() noexcept { halves_seen_ = 0; }
+  /// Reads a frame of the bus. What it brought stands in the calls below until the next one.
+  [[nodiscard]] WrenchSource::Taken take(const CanFrame& frame) noexcept;
+
+  /// The force of the last frame, sensor axes, N, where it tells one by itself.
+  [[nodiscard]] const std::optional<Vector3>& force_N() const noexcept { return force_N_; }
+  /// The whole new sample that the last frame completed.
+  [[nodiscard]] const std::optional<Sample>& sample() const noexcept { return sample_; }
+  /// The first axis of that sample that is at the end of its range.
+  [[nodiscard]] const std::optional<Saturated>& saturated() const noexcept { return saturated_; }
+  /// Both halves came since forget_freshness(), of one sample or not.
+  [[nodiscard]] bool both_halves_seen() const noexcept { return halves_seen_ == 3; }
+  /// Halves that were dropped since reset().
+  [[nodiscard]] std::uint64_t torn() const noexcept { return pairing_.torn(); }
+
+ private:
+  void take_sample(const WrenchPairing::Sample& paired) noexcept;
+
+  WrenchSource& source_;
+  const ForceTorqueSensor sensor_;
+  WrenchPairing pairing_;
+  std::optional<Vector3> force_N_;
+  std::optional<Sample> sample_;
+  std::optional<Saturated> saturated_;
+  std::uint8_t halves_seen_ = 0;  ///< bit 0: the first, bit 1: the second
+};
+
+}  // namespace tenon::hw

@@ -1,0 +1,147 @@
+// What is judged of a wrench, whichever sensor sends it, and the bytes of the CANopen node.
+
+#include "hw/sensors/wrench_intake.h"
+
+#include <gtest/gtest.h>
+
+#include "hw/sensors/canopen_wrench_source.h"
+
+namespace tenon::hw {
+namespace {
+
+using Taken = WrenchSource::Taken;
+
+ForceTorqueSensor intake_test_sensor() {
+  ForceTorqueSensor sensor;
+  sensor.node = 4;
+  sensor.force_per_count_N = 0.01;
+  sensor.torque_per_count_Nm = 0.0005;
+  sensor.force_range_N = 300.0;
+  sensor.torque_range_Nm = 15.0;
+  return sensor;
+}
+
+CanFrame canopen_force_frame() {
+  // 1.00, -0.02, 2.56 N; counter 0201h
+  return {0x181, false, false, 8, {0x64, 0x00, 0xFE, 0xFF, 0x00, 0x01, 0x01, 0x02}};
+}
+CanFrame canopen_torque_frame() {
+  // 0.05, -0.0005, 0 Nm; counter 0201h
+  return {0x182, false, false, 8, {0x64, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x01, 0x02}};
+}
+
+class WrenchIntakeOfCanopenNode : public testing::Test {
+ protected:
+  CanopenWrenchSource source{intake_test_sensor(), {0x181, 0x182}};
+  WrenchIntake intake{source, intake_test_sensor()};
+};
+
+TEST_F(WrenchIntakeOfCanopenNode, TwoFramesAreAWrenchInNewtonsAndTheForceIsKnownWithTheFirst) {
+  EXPECT_EQ(intake.take(canopen_force_frame()), Taken::kHalf);
+  ASSERT_TRUE(intake.force_N());
+  EXPECT_TRUE(intake.force_N()->isApprox(Vector3(1.0, -0.02, 2.56)));
+  EXPECT_FALSE(intake.sample());
+  EXPECT_FALSE(intake.both_halves_seen());
+  EXPECT_EQ(intake.take(canopen_torque_frame()), Taken::kHalf);
+  EXPECT_FALSE(intake.force_N());
+  ASSERT_TRUE(intake.sample());
+  Vector6 expected;
+  expected << 1.0, -0.02, 2.56, 0.05, -0.0005, 0.0;
+  EXPECT_TRUE(intake.sample()->wrench.isApprox(expected));
+  EXPECT_EQ(intake.sample()->counter, 0x0201);
+  EXPECT_FALSE(intake.saturated());
+  EXPECT_TRUE(intake.both_halves_seen());
+}
+
+TEST_F(WrenchIntakeOfCanopenNode, ARepeatedSampleIsNone) {
+  for (const bool fresh : {true, false}) {
+    (void)intake.take(canopen_force_frame());
+    (void)intake.take(canopen_torque_frame());
+    EXPECT_EQ(intake.sample().has_value(), fresh);
+  }
+  EXPECT_EQ(intake.torn(), 0U);
+}
+
+TEST_F(WrenchIntakeOfCanopenNode, HalvesOfTwoSamplesAreTornAndNoWrench) {
+  CanFrame torque = canopen_torque_frame();
+  torque.data[6] = 0x02;
+  (void)intake.take(canopen_force_frame());
+  (void)intake.take(torque);
+  EXPECT_FALSE(intake.sample());
+  EXPECT_TRUE(intake.both_halves_seen());
+  EXPECT_EQ(intake.torn(), 1U);
+  intake.reset();
+  EXPECT_FALSE(intake.both_halves_seen());
+  EXPECT_EQ(intake.torn(), 0U);
+}
+
+TEST_F(WrenchIntakeOfCanopenNode, TheFirstAxisAtTheEndOfItsRangeIsNamed) {
+  CanFrame torque = canopen_torque_frame();
+  torque.data[2] = 0x30;  // ty: 30000 counts, 15 Nm
+  torque.data[3] = 0x75;
+  torque.data[4] = 0x00;  // tz: -32768 counts
+  torque.data[5] = 0x80;
+  (void)intake.take(canopen_force_frame());
+  (void)intake.take(torque);
+  ASSERT_TRUE(intake.saturated());
+  EXPECT_EQ(intake.saturated()->axis, 4);
+  EXPECT_EQ(intake.saturated()->raw, 30000);
+}
+
+TEST_F(WrenchIntakeOfCanopenNode, FramesOfOthersAndOfAnotherLengthBringNothing) {
+  CanFrame frame = canopen_force_frame();
+  frame.id = 0x183;
+  EXPECT_EQ(intake.take(frame), Taken::kForeign);
+  frame.id = 0x181;
+  frame.extended = true;
+  EXPECT_EQ(intake.take(frame), Taken::kForeign);
+  frame.extended = false;
+  frame.remote = true;
+  EXPECT_EQ(intake.take(frame), Taken::kForeign);
+  frame.remote = false;
+  frame.length = 7;
+  EXPECT_EQ(intake.take(frame), Taken::kMalformed);
+  EXPECT_FALSE(intake.force_N());
+  EXPECT_FALSE(intake.sample());
+}
+
+/// Big-endian values in one identifier, first half or second by its last byte; no force by itself.
+class HandMadeWrenchSource final : public WrenchSource {
+ public:
+  [[nodiscard]] Taken take(const CanFrame& frame, WrenchHalf& half) noexcept override {
+    if (frame.id != 0x50) return Taken::kForeign;
+    half.place = frame.data[7];
+    half.counter = frame.data[6];
+    for (std::size_t i = 0; i < 3; ++i) {
+      half.raw[i] = static_cast<std::int16_t>(frame.data[2 * i] << 8 | frame.data[2 * i + 1]);
+    }
+    return Taken::kHalf;
+  }
+  [[nodiscard]] std::optional<Vector3> force_N(const WrenchHalf& /*half*/) const noexcept override {
+    return std::nullopt;
+  }
+  /// Axes in the opposite order.
+  [[nodiscard]] Vector6 wrench(const std::array<std::int16_t, 6>& raw) const noexcept override {
+    Vector6 wrench;
+    for (std::size_t i = 0; i < 6; ++i) wrench[static_cast<Eigen::Index>(5 - i)] = raw[i];
+    return wrench;
+  }
+};
+
+TEST(WrenchIntake, TheRangeOfASensorOfAnotherLayoutIsThatOfItsWrenchAndNotOfItsRawValues) {
+  HandMadeWrenchSource source;
+  WrenchIntake intake(source, intake_test_sensor());
+  EXPECT_EQ(intake.take({0x50, false, false, 8, {0x00, 0x01, 0x00, 0x02, 0x00, 0x03, 9, 0}}),
+            Taken::kHalf);
+  EXPECT_FALSE(intake.force_N());
+  EXPECT_EQ(intake.take({0x50, false, false, 8, {0x00, 0x04, 0x00, 0x05, 0x01, 0x2C, 9, 1}}),
+            Taken::kHalf);
+  ASSERT_TRUE(intake.sample());
+  EXPECT_DOUBLE_EQ(intake.sample()->wrench[0], 300.0);  // raw value 5 is 012Ch
+  EXPECT_DOUBLE_EQ(intake.sample()->wrench[5], 1.0);
+  ASSERT_TRUE(intake.saturated());
+  EXPECT_EQ(intake.saturated()->axis, 0);
+}
+
+}  // namespace
+}  // namespace tenon::hw
