@@ -13,7 +13,7 @@ import subprocess
 import tempfile
 import time
 
-SECONDS_MAX = 60  # that a page may take for anything before it counts as hung
+SECONDS_MAX = 300  # that a page may take for anything before it counts as hung
 
 
 class BrowserError(Exception):
@@ -125,7 +125,7 @@ class Browser:
         """@param calm: the reader wants no motion: nothing plays by itself"""
         self.events.clear()
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
-                  mobile=False)
+                  mobile=width < 600)
         self.call("Emulation.setEmulatedMedia", features=[
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
             {"name": "prefers-reduced-motion", "value": "reduce" if calm else "no-preference"}])

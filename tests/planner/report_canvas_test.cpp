@@ -80,9 +80,9 @@ TEST(ReportCanvas, AShadowIsTheOutlineOfAllOfIt) {
 
 TEST(ReportCanvas, APictureHoldsEverythingWithARim) {
   // 1 m wide and 2 % on each side: from -520 to 520 mm.
-  EXPECT_NE(from_the_side().open(200).find("viewBox='-520.00 -520.00 1040.00 1040.00'"),
+  EXPECT_NE(from_the_side().open("side").find("viewBox='-520.00 -520.00 1040.00 1040.00'"),
             std::string::npos)
-      << from_the_side().open(200);
+      << from_the_side().open("side");
 }
 
 TEST(ReportCanvas, APictureHoldsThePartWhereverItGoes) {
@@ -90,7 +90,8 @@ TEST(ReportCanvas, APictureHoldsThePartWhereverItGoes) {
   task.held = {box({0.2, 0.2, 0.2}, Vector3::Zero())};
   const Canvas canvas(drawing::views_of(0b101).front(), task, {Vector3::Zero(), {-0.73, 0.0, 0.0}});
   // From -830 mm to the goal at 170 and 100 more: 1100 mm, and 22 on each side.
-  EXPECT_NE(canvas.open(200).find("viewBox='-852.00 "), std::string::npos) << canvas.open(200);
+  EXPECT_NE(canvas.open("side").find("viewBox='-852.00 "), std::string::npos)
+      << canvas.open("side");
 }
 
 }  // namespace
