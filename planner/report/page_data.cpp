@@ -21,23 +21,23 @@ using Json = nlohmann::ordered_json;
 /// To a thousandth of a millimetre or a milliradian: a page has thousands of them.
 double rounded(double value) { return std::round(1e6 * value) / 1e6; }
 
-Json json_of(const Vector6& v) {
+Json rounded_json(const Vector6& v) {
   Json json = Json::array();
   for (int axis = 0; axis < 6; ++axis) json.push_back(rounded(v[axis]));
   return json;
 }
 
-Json json_of(const Pose& pose) { return Json::parse(drawing::pose_json(pose)); }
+Json rounded_json(const Pose& pose) { return Json::parse(drawing::pose_json(pose)); }
 
 Json json_of(const ReportData& data, const Chain& chain) {
   Json json;
-  json["poses"] = Json::array({json_of(chain.tool(0))});
+  json["poses"] = Json::array({rounded_json(chain.tool(0))});
   json["outcomes"] = Json::array();
   json["durations_s"] = Json::array();
   json["touching"] = Json::array();
   for (std::size_t i = 0; i < chain.moves.size(); ++i) {
     const GuardedMove::Result& move = chain.moves[i];
-    json["poses"].push_back(json_of(chain.tool(i + 1)));
+    json["poses"].push_back(rounded_json(chain.tool(i + 1)));
     json["outcomes"].push_back(to_string(move.outcome));
     json["durations_s"].push_back(1e-3 * std::round(1e-6 * static_cast<double>(move.duration_ns)));
     json["touching"].push_back(touched_by(data, chain, i));
@@ -55,7 +55,7 @@ Json view_json(const drawing::View& view) {
 Json step_json(const ReportData& data, std::size_t index) {
   const Step& step = data.plan.steps[index];
   Json json;
-  json["displacement"] = json_of(step.displacement);
+  json["displacement"] = rounded_json(step.displacement);
   json["carried_axes"] = data.plan.parameter_sets[step.parameter_set].carried_axes;
   json["words"] = displacement_text(step);
   if (index + 1 < data.nodes.size()) {
@@ -87,15 +87,15 @@ std::string page_json(const ReportData& data) {
   for (int axis = 0; axis < 6; ++axis) {
     if (has(plan.coordinates, axis)) json["coordinates"].push_back(axis);
   }
-  json["start"] = json_of(plan.start);
-  json["goal"] = json_of(plan.goal);
+  json["start"] = rounded_json(plan.start);
+  json["goal"] = rounded_json(plan.goal);
   json["goal_tolerance_m"] = rounded(plan.goal_tolerance_m);
   json["goal_uncertainty_m"] = rounded(std::sqrt(data.task.goal_uncertainty_m2));
   json["steps"] = Json::array();
   for (std::size_t i = 0; i < plan.steps.size(); ++i) json["steps"].push_back(step_json(data, i));
   json["nodes"] = Json::array();
   for (const BeliefNode& node : data.nodes) {
-    json["nodes"].push_back({{"spread", json_of(node.spread)},
+    json["nodes"].push_back({{"spread", rounded_json(node.spread)},
                              {"uncertainty_m", rounded(std::sqrt(node.uncertainty_m2))}});
   }
   json["particles"] = Json::array();
