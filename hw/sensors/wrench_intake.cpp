@@ -35,7 +35,7 @@ WrenchSource::Taken WrenchIntake::take(const CanFrame& frame) noexcept {
 
 void WrenchIntake::take_sample(const WrenchPairing::Sample& paired) noexcept {
   sample_ = Sample{source_.wrench(paired.counts), paired.counter};
-  for (std::uint8_t axis = 0; axis < paired.counts.size(); ++axis) {
+  for (std::uint8_t axis = 0; axis < 6; ++axis) {
     const std::int16_t raw = paired.counts[axis];
     const double range = axis < 3 ? sensor_.force_range_N : sensor_.torque_range_Nm;
     // A range of 0 is not given; the 16 bits still end somewhere.

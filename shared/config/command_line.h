@@ -39,7 +39,9 @@ inline std::string usage_error(const CLI::App& app, const CLI::ParseError& error
   for (const std::string& word : app.remaining(true)) {
     if (!word.starts_with("--")) continue;
     const std::string meant = did_you_mean(word.substr(0, word.find('=')), known);
-    if (!meant.empty()) return word + ": is an unknown option" + meant + " See --help";
+    if (meant.empty()) continue;
+    std::string line = word;
+    return line.append(": is an unknown option").append(meant).append(" See --help");
   }
   return std::string(error.what()) + "; see --help";
 }

@@ -50,8 +50,9 @@ void expect_kind(const std::filesystem::path& file, const Value& document, FileK
   for (const Kind& other : kinds()) {
     if (!has_one_of(document, other.telling)) continue;
     const std::string name(other.name);
-    throw InputError(file.string() + ": is " + name + ", not " + std::string(own->name) + "; " +
-                     name + " " + std::string(other.where));
+    std::string line = file.string();
+    line.append(": is ").append(name).append(", not ").append(own->name);
+    throw InputError(line.append("; ").append(name).append(" ").append(other.where));
   }
 }
 
