@@ -144,9 +144,18 @@ int check(const Arguments& a, const Task& task) {
   return checked.refused() ? 2 : 0;
 }
 
+/// Of what only planning writes, nothing is taken and then not written.
+void write_nothing_more(const char* what, const char* option, const std::string& given) {
+  if (given.empty()) return;
+  throw InputError(
+      format("%s: %s plans nothing and would write nothing there; leave it out", option, what));
+}
+
 int run(const Arguments& a) {
   Task task = load_task(a.task);
   if (a.check) {
+    write_nothing_more("--check", "--output", a.output);
+    write_nothing_more("--check", "--json", a.json);
     if (!a.cell.empty()) task = planner::fit_to_cell(task, load_cell(a.cell)).task;
     return check(a, task);
   }
@@ -217,6 +226,7 @@ int main(int argc, char** argv) {
     }
     if (arguments.task.empty()) {
       if (arguments.output.empty()) throw InputError("--output is required; see --help");
+      write_nothing_more("--new-task", "--json", arguments.json);
       arguments.new_task.output = arguments.output;
       return write_new_task(arguments.new_task);
     }

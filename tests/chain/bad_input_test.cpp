@@ -56,6 +56,8 @@ TEST(BadInput, OfThePlannerIsOneLineAndStatusTwo) {
       {{planner, box_task_file(), "--time-limit", "nan", "-o", output},
        {"--time-limit", "nan", "(0, 86400]"}},
       {{planner, box_task_file(), "--move-limit", "0", "-o", output}, {"--move-limit", "0"}},
+      {{planner, "--check", box_task_file(), "--json", "-"}, {"--json", "--check", "leave it out"}},
+      {{planner, "--check", box_task_file(), "-o", output}, {"--output", "--check"}},
       {{planner, box_task_file(), "-o", "nowhere/x.tnp"}, {"nowhere/x.tnp", "written"}},
       {{executable("tenon-sim"), "--cell", gantry_cell_file(), "--task", box_task_file(), "--can",
         "slcan-listen://127.0.0.1:0", "--seed", "-1"},
