@@ -54,8 +54,9 @@ build() {
   cmake --build --preset "$1" --parallel "$jobs" -- "${quiet[@]}"
 }
 
-# Two checks wait more than they work: `guest` and the tests in real time. In this clone, and never in
-# `full`, they are left out where all that they run and read is what they last passed on, byte for byte.
+# Some checks are long and see few files: `guest` and the tests in real time, which mostly wait, and those of
+# faults, which need no planner. In this clone, and never in `full`, they are left out where all that they run
+# and read is what they last passed on, byte for byte.
 
 # One hash of the built files named, and of every file of the tree that is not compiled; empty without git.
 bytes_of() {
@@ -124,11 +125,14 @@ run_tests() {
 stage_unit() {
   build dev
   [[ $tier == commit ]] || cmake --build --preset dev --target test_plans_full
-  local bytes without=()
-  bytes=$(bytes_of build/dev/bin/{tests_realtime,tenon-exec,tenon-sim} build/dev/plans/*)
-  if passed_before realtime "$bytes"; then without=(--exclude-regex '^realtime\.'); fi
-  run_tests dev "${without[@]}"
-  passed_now realtime "$bytes"
+  local realtime faults without=nothing
+  realtime=$(bytes_of build/dev/bin/{tests_realtime,tenon-exec,tenon-sim} build/dev/plans/*)
+  faults=$(bytes_of build/dev/bin/tests_faults build/dev/plans/*)
+  if passed_before realtime "$realtime"; then without+="|realtime"; fi
+  if passed_before faults "$faults"; then without+="|faults"; fi
+  run_tests dev --exclude-regex "^($without)\."
+  passed_now realtime "$realtime"
+  passed_now faults "$faults"
 }
 
 stage_guest() {

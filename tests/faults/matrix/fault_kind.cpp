@@ -1,4 +1,4 @@
-#include "tests/chain/fault_matrix/fault_kind.h"
+#include "tests/faults/matrix/fault_kind.h"
 
 #include <utility>
 

@@ -21,7 +21,7 @@
 #include "shared/base/text.h"
 #include "shared/base/wilson.h"
 #include "sim/cell/virtual_arm/environment_offset.h"
-#include "tests/chain/fault_matrix/driven_run.h"
+#include "tests/faults/matrix/driven_run.h"
 
 namespace tenon::tests {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "executor/faults/fault_table.h"
 #include "sim/cell/faults/fault_phases.h"
-#include "tests/chain/fault_matrix/driven_run.h"
-#include "tests/chain/fault_matrix/fault_kind.h"
+#include "tests/faults/matrix/driven_run.h"
+#include "tests/faults/matrix/fault_kind.h"
 
 namespace tenon::tests {
 

@@ -1,4 +1,4 @@
-#include "tests/chain/fault_matrix/driven_run.h"
+#include "tests/faults/matrix/driven_run.h"
 
 #include <algorithm>
 #include <cmath>

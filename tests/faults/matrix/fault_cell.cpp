@@ -1,4 +1,4 @@
-#include "tests/chain/fault_matrix/fault_cell.h"
+#include "tests/faults/matrix/fault_cell.h"
 
 #include <algorithm>
 #include <limits>

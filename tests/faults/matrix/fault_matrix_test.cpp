@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "tests/chain/fault_matrix/fault_cell.h"
-#include "tests/chain/fault_matrix/fault_kind.h"
+#include "tests/faults/matrix/fault_cell.h"
+#include "tests/faults/matrix/fault_kind.h"
 
 namespace tenon::tests {
 namespace {
