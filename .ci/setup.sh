@@ -13,7 +13,7 @@ build_packages=(
   libyaml-cpp-dev liburdfdom-dev libconsole-bridge-dev libcli11-dev nlohmann-json3-dev
 )
 test_packages=(
-  libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev
+  libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev libfcl-dev
   clang-format clang-tidy cppcheck git python3 python3-can python3-serial iproute2
   can-utils qemu-system-x86 busybox-static cpio chromium
 )

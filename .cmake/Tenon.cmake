@@ -83,7 +83,7 @@ set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 hw_check shared_eds
 # Everything under tests/ may use any library, and never a main.
 set(TENON_MAY_USE_tests ${TENON_LIBRARIES} test_support Eigen3::Eigen yaml-cpp ODE::ODE LCM::lcm
     Threads::Threads nlohmann_json::nlohmann_json GTest::gtest GTest::gmock GTest::gtest_main
-    GTest::gmock_main orocos-kdl benchmark::benchmark benchmark::benchmark_main)
+    GTest::gmock_main orocos-kdl fcl benchmark::benchmark benchmark::benchmark_main)
 
 # Stops unless the row of the table allows `target` to use each of the given dependencies.
 function(tenon_check_dependencies target)

@@ -15,6 +15,7 @@ namespace {
 constexpr int kPlaces = 80;
 // A part that can go aside by this, and by its play besides, is out of the other.
 constexpr double kAside_m = 1e-3;
+constexpr double kPlayStep_m = 50e-6;  // while the parts touch: less than any wall
 constexpr double kPlayResolution_m = 5e-6;
 constexpr double kRounding_m = 1e-9;
 // How many of the plug's largest flat directions are tried beside the axes of the file.
@@ -58,20 +59,28 @@ class Fitting {
   }
 
   /// Both ways together, from a place, until the parts touch, or overlap more than they did there.
+  /// Beyond what stops it the plug may be free again, so it goes outwards, by what is free at a
+  /// time.
   [[nodiscard]] double play_m(const Vector3& from_m, const Vector3& aside) const {
     const auto gap_at = [&](const Vector3& off_m) {
-      return gap_.gap_m({X_EH_.position_m + off_m, X_EH_.orientation}, 0.0);
+      return gap_.gap_m({X_EH_.position_m + off_m, X_EH_.orientation}, kAside_m);
     };
-    const double least_m = gap_at(from_m) - kRounding_m;
+    const double least_m = std::min(0.0, gap_at(from_m)) - kRounding_m;
+    const double far_m = plug_.size_m().maxCoeff();
     double play_m = 0.0;
     for (const double sign : {1.0, -1.0}) {
-      double low_m = 0.0;
-      double high_m = plug_.size_m().maxCoeff();
-      while (high_m - low_m > kPlayResolution_m) {
-        const double middle_m = 0.5 * (low_m + high_m);
-        (gap_at(from_m + sign * middle_m * aside) >= least_m ? low_m : high_m) = middle_m;
+      double free_m = 0.0;
+      double next_m = 0.0;
+      for (double gap_m = gap_at(from_m); gap_m >= least_m && free_m < far_m;
+           gap_m = gap_at(from_m + sign * next_m * aside)) {
+        free_m = next_m;
+        next_m = free_m + std::max(gap_m, kPlayStep_m);
       }
-      play_m += low_m;
+      while (next_m - free_m > kPlayResolution_m && free_m < far_m) {
+        const double middle_m = 0.5 * (free_m + next_m);
+        (gap_at(from_m + sign * middle_m * aside) >= least_m ? free_m : next_m) = middle_m;
+      }
+      play_m += std::min(free_m, far_m);
     }
     return play_m;
   }

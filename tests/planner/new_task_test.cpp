@@ -54,6 +54,18 @@ TEST(NewTask, ARoundPegMayTurn) {
   EXPECT_NEAR(fit.play_m[0], 0.6e-3, 0.05e-3);
 }
 
+TEST(NewTask, BeyondAWallThereIsNoPlay) {
+  // So long a plug that it would be free again on the other side of the thin wall.
+  const tests::Profile peg = tests::round_profile(4e-3, 48);
+  const tests::Profile hole = tests::round_profile(4.3e-3, 48);
+  const tests::Profile tube = tests::round_profile(8e-3, 48);
+  const auto socket = tests::lofted({{tube, -5e-3}, {tube, 20e-3}, {hole, 20e-3}, {hole, 0.0}});
+  const PartFit fit =
+      fit_of(solid_of(tests::lofted({{peg, 0.0}, {peg, 50e-3}})), solid_of(socket), {});
+  EXPECT_NEAR(fit.play_m[0], 0.6e-3, 0.05e-3);
+  EXPECT_NEAR(fit.depth_m, 20e-3, 0.6e-3);
+}
+
 TEST(NewTask, TheWayOutNeedNotBeUp) {
   const Pose askew{{0.01, -0.02, 0.3}, rotation_of({0.0, 2.0, 0.0})};
   // The plug is in its own frame; where it stands in the socket's is said.
