@@ -7,6 +7,7 @@
 #include "shared/config/files.h"
 #include "shared/geometry/mesh_check.h"
 #include "shared/geometry/mesh_file.h"
+#include "shared/geometry/mesh_needles.h"
 
 namespace tenon::config {
 namespace {
@@ -37,7 +38,7 @@ double longest_side(const TriangleMesh& mesh) {
 
 TriangleMesh parse_part(const std::filesystem::path& file, const std::string& bytes,
                         double scale_m) {
-  TriangleMesh mesh = read_part(file, bytes, scale_m);
+  TriangleMesh mesh = without_needles(read_part(file, bytes, scale_m));
   check_mesh(mesh);
   return mesh;
 }

@@ -8,15 +8,15 @@
 
 #include "shared/base/error.h"
 #include "shared/base/text.h"
+#include "shared/geometry/mesh_needles.h"
 #include "shared/geometry/mesh_shells.h"
 #include "shared/geometry/self_intersection.h"
 
 namespace tenon {
 namespace {
 
+constexpr double kSizeMin_m = 1e-5;
 constexpr double kSizeMax_m = 100.0;
-// A triangle's height. Its side is lost in rounding below.
-constexpr double kHeightMin_m = 1e-9;
 
 std::string at(const Vector3& place_m) {
   return format("at (%.4f, %.4f, %.4f) mm", 1e3 * place_m.x(), 1e3 * place_m.y(),
@@ -34,6 +34,12 @@ void check_points(const TriangleMesh& mesh) {
     low_m = low_m.cwiseMin(point_m);
     high_m = high_m.cwiseMax(point_m);
   }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double size_m = high_m[axis] - low_m[axis];
+    if (size_m >= kSizeMin_m) continue;
+    throw InputError(format("measures %g m along %c, must be at least %g m: is scale too small?",
+                            size_m, "xyz"[axis], kSizeMin_m));
+  }
   const Vector3 furthest_m = low_m.cwiseAbs().cwiseMax(high_m.cwiseAbs());
   if (furthest_m.maxCoeff() <= kSizeMax_m) return;
   throw InputError(
@@ -45,14 +51,10 @@ void check_points(const TriangleMesh& mesh) {
 void check_triangles(const TriangleMesh& mesh) {
   std::size_t thin = 0;
   std::size_t first = 0;
-  double least_m = kHeightMin_m;
+  double least_m = kTriangleHeightMin_m;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const std::array<Vector3, 3> c = mesh.corners_m(i);
-    const double longest_m =
-        std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
-    const double height_m =
-        longest_m > 0.0 ? (c[1] - c[0]).cross(c[2] - c[0]).norm() / longest_m : 0.0;
-    if (height_m >= kHeightMin_m) continue;
+    const double height_m = tenon::height_m(mesh, mesh.triangles[i]);
+    if (height_m >= kTriangleHeightMin_m) continue;
     if (thin++ == 0) first = i;
     least_m = std::min(least_m, height_m);
   }
@@ -61,7 +63,7 @@ void check_triangles(const TriangleMesh& mesh) {
                    " first, " + at(mesh.corners_m(first)[0]) +
                    format(", are %.1e m high or less, must be at least %.0e m: merge points that "
                           "are the same, or is scale too small?",
-                          least_m, kHeightMin_m));
+                          least_m, kTriangleHeightMin_m));
 }
 
 struct Uses {

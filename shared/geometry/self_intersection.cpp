@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "shared/geometry/mesh_needles.h"
 #include "shared/geometry/triangle_tree.h"
 
 namespace tenon {
@@ -48,7 +49,8 @@ std::optional<Vector3> meeting(const TriangleMesh& mesh, std::uint32_t i, std::u
   const auto shared = std::count_if(t.begin(), t.end(),
                                     [&](std::uint32_t point) { return has_corner(other, point); });
   if (shared >= 2) {
-    if (folded(mesh.corners_m(i), c)) return Vector3((c[0] + c[1] + c[2]) / 3.0);
+    const bool thin = std::min(height_m(mesh, t), height_m(mesh, other)) < kSliver_m;
+    if (!thin && folded(mesh.corners_m(i), c)) return Vector3((c[0] + c[1] + c[2]) / 3.0);
     return std::nullopt;
   }
   for (std::size_t k = 0; k < 3; ++k) {

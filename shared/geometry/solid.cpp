@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
+#include <vector>
+
+#include "shared/geometry/mesh_needles.h"
 
 namespace tenon {
 namespace {
@@ -45,18 +47,54 @@ Solid::Solid(TriangleMesh mesh)
   find_normals();
 }
 
+// A sliver faces as the triangle across its longest edge does.
+void Solid::face_slivers(const TriangleOf& triangle_of) {
+  std::vector<std::uint32_t> left;
+  std::vector<bool> faces(mesh_.triangles.size(), true);
+  for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+    if (height_m(mesh_, mesh_.triangles[i]) >= kSliver_m) continue;
+    left.push_back(i);
+    faces[i] = false;
+  }
+  const auto beyond = [&](std::uint32_t sliver) {
+    const Triangle& t = mesh_.triangles[sliver];
+    const auto c = mesh_.corners_m(sliver);
+    std::size_t longest = 0;
+    for (std::size_t j = 1; j < 3; ++j) {
+      const auto length_m = [&](std::size_t k) { return (c[(k + 1) % 3] - c[k]).norm(); };
+      if (length_m(j) > length_m(longest)) longest = j;
+    }
+    return triangle_of.at(key_of(t[(longest + 1) % 3], t[longest]));
+  };
+  for (std::size_t before = left.size() + 1; left.size() < before;) {
+    before = left.size();
+    std::erase_if(left, [&](std::uint32_t i) {
+      const std::uint32_t other = beyond(i);
+      if (faces[other]) face_normals_[i] = face_normals_[other];
+      return faces[i] = faces[other];
+    });
+  }
+}
+
 void Solid::find_normals() {
   const std::size_t count = mesh_.triangles.size();
   face_normals_.resize(count);
   edge_normals_.resize(count);
   corner_normals_.assign(mesh_.points_m.size(), Vector3::Zero());
-  std::unordered_map<std::uint64_t, std::uint32_t> triangle_of;
+  TriangleOf triangle_of;
   for (std::size_t i = 0; i < count; ++i) {
     const std::array<Vector3, 3> c = mesh_.corners_m(i);
     face_normals_[i] = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
     for (std::size_t j = 0; j < 3; ++j) {
       const Triangle& t = mesh_.triangles[i];
       triangle_of[key_of(t[j], t[(j + 1) % 3])] = static_cast<std::uint32_t>(i);
+    }
+  }
+  face_slivers(triangle_of);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::array<Vector3, 3> c = mesh_.corners_m(i);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Triangle& t = mesh_.triangles[i];
       corner_normals_[t[j]] += angle_at(c[j], c[(j + 1) % 3], c[(j + 2) % 3]) * face_normals_[i];
     }
   }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "shared/geometry/triangle_mesh.h"
@@ -51,7 +52,11 @@ class Solid {
   [[nodiscard]] const std::vector<Edge>& convex_edges() const { return convex_edges_; }
 
  private:
+  /// By the directed edge.
+  using TriangleOf = std::unordered_map<std::uint64_t, std::uint32_t>;
+
   void find_normals();
+  void face_slivers(const TriangleOf& triangle_of);
   [[nodiscard]] Place place_at(const Vector3& point_m, const NearestOnTriangle& nearest) const;
   [[nodiscard]] const Vector3& normal_at(const NearestOnTriangle& nearest) const;
 

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "shared/geometry/extrusion.h"
+#include "shared/geometry/mesh_needles.h"
+#include "shared/geometry/solid.h"
 #include "tests/support/meshes.h"
 #include "tests/support/refusal.h"
 
@@ -61,10 +63,13 @@ TEST(MeshCheck, WhatIsNoBodyIsRefused) {
 
   EXPECT_THAT(refused(box_mesh({10, 20, 300})),
               HasSubstr("reaches 150 m from its origin, must be at most 100 m: is scale right?"));
-  EXPECT_THAT(
-      refused(box_mesh({1e-2, 1e-2, 1e-10})),
-      HasSubstr("8 of its triangles, number 4 first, at (-5.0000, -5.0000, -0.0000) mm, are "
-                "1.0e-10 m high or less, must be at least 1e-09 m"));
+  EXPECT_THAT(refused(box_mesh({1e-2, 1e-2, 1e-6})),
+              HasSubstr("measures 1e-06 m along z, must be at least 1e-05 m: is scale too small?"));
+  TriangleMesh needle = kCheckedBox;
+  needle.triangles.push_back({0, 0, 1});
+  EXPECT_THAT(refused(needle), HasSubstr("1 of its triangles, number 12 first, at (-5.0000, "
+                                         "-10.0000, -15.0000) mm, are 0.0e+00 m high or less, "
+                                         "must be at least 1e-11 m"));
 }
 
 TEST(MeshCheck, WhatMeetsItselfIsRefused) {
@@ -93,6 +98,93 @@ TEST(MeshCheck, OutlinesThatEncloseNothingAreRefused) {
   EXPECT_THAT(refused({{0, 0}, {1, 1}, {1, 0}, {0, 1}}),
               HasSubstr("the sides after corners 0 and 2 cross or touch"));
   EXPECT_THAT(refused({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}}), HasSubstr("cross or touch"));
+}
+
+/// Volume by the divergence theorem.
+double volume_m3(const TriangleMesh& mesh) {
+  double six_m3 = 0.0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto c = mesh.corners_m(i);
+    six_m3 += c[0].dot(c[1].cross(c[2]));
+  }
+  return six_m3 / 6.0;
+}
+
+TEST(MeshNeedles, ACornerOnAnEdgeBecomesOneOfTheTriangleBeyond) {
+  // Of one triangle a corner more, on its first edge: the surface is closed by a needle.
+  for (const double at : {0.5, 1e-3}) {
+    TriangleMesh mesh = kCheckedBox;
+    const Triangle cut = mesh.triangles[4];
+    const auto more = static_cast<std::uint32_t>(mesh.points_m.size());
+    mesh.points_m.push_back((1.0 - at) * mesh.points_m[cut[0]] + at * mesh.points_m[cut[1]]);
+    mesh.triangles[4] = {cut[0], more, cut[2]};
+    mesh.triangles.push_back({more, cut[1], cut[2]});
+    mesh.triangles.push_back({cut[0], cut[1], more});
+    EXPECT_THAT(refused(mesh), HasSubstr("1 of its triangles, number 13 first"));
+    const TriangleMesh mended = without_needles(mesh);
+    EXPECT_NO_THROW(check_mesh(mended));
+    EXPECT_EQ(mended.triangles.size(), mesh.triangles.size());
+    EXPECT_NEAR(volume_m3(mended), 6e-6, 1e-15);
+  }
+}
+
+TEST(MeshNeedles, ManyCornersOnAnEdgeAndOnesThatRoundingFoldedBack) {
+  // Along one edge eight corners that the triangle beyond does not have, each off by a rounding.
+  for (const double off_m : {0.0, 0.4e-6, -0.4e-6}) {
+    TriangleMesh mesh = kCheckedBox;
+    const Triangle cut = mesh.triangles[4];
+    const Vector3 way_m = mesh.points_m[cut[1]] - mesh.points_m[cut[0]];
+    const Vector3 inwards =
+        (mesh.points_m[cut[2]] - mesh.points_m[cut[0]]).cross(way_m).cross(way_m).normalized();
+    std::vector<std::uint32_t> along = {cut[0]};
+    constexpr int kMore = 8;
+    for (int i = 1; i <= kMore; ++i) {
+      along.push_back(static_cast<std::uint32_t>(mesh.points_m.size()));
+      mesh.points_m.push_back(mesh.points_m[cut[0]] + way_m * (i / (kMore + 1.0)) +
+                              off_m * inwards);
+    }
+    along.push_back(cut[1]);
+    mesh.triangles.erase(mesh.triangles.begin() + 4);
+    for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+      mesh.triangles.push_back({along[i], along[i + 1], cut[2]});
+      if (i > 0) mesh.triangles.push_back({cut[0], along[i + 1], along[i]});
+    }
+    const TriangleMesh mended = without_needles(mesh);
+    EXPECT_NO_THROW(check_mesh(mended)) << off_m;
+    EXPECT_NEAR(volume_m3(mended), 6e-6, 1e-9);
+    // Whatever lies nearest, a point inside is inside, and one outside is not.
+    const Solid solid(mended);
+    for (int i = 0; i < 2000; ++i) {
+      const double at = (i + 0.5) / 2000.0;
+      const Vector3 edge_m = (1.0 - at) * mesh.points_m[cut[0]] + at * mesh.points_m[cut[1]];
+      for (const double out_m : {1e-3, -1e-3}) {
+        const Vector3 point_m = edge_m - solid.centre_m() + out_m * edge_m.normalized();
+        EXPECT_EQ(solid.place(point_m).distance_m > 0.0, out_m > 0.0) << off_m << ' ' << at;
+      }
+    }
+  }
+}
+
+TEST(MeshNeedles, CornersThatAreNearlyTheSameBecomeOne) {
+  // A corner twice, a picometre apart, and two needles between.
+  TriangleMesh mesh = kCheckedBox;
+  const Triangle cut = mesh.triangles[0];
+  const auto twin = static_cast<std::uint32_t>(mesh.points_m.size());
+  mesh.points_m.push_back(mesh.points_m[cut[0]] + Vector3(1e-12, 0.0, 0.0));
+  mesh.triangles[0] = {twin, cut[1], cut[2]};
+  mesh.triangles.push_back({cut[0], cut[1], twin});
+  mesh.triangles.push_back({cut[0], twin, cut[2]});
+  EXPECT_THAT(refused(mesh), HasSubstr("2 of its triangles"));
+  const TriangleMesh mended = without_needles(mesh);
+  EXPECT_NO_THROW(check_mesh(mended));
+  EXPECT_EQ(mended.triangles.size(), kCheckedBox.triangles.size());
+  EXPECT_NEAR(volume_m3(mended), 6e-6, 1e-15);
+}
+
+TEST(MeshNeedles, WhatIsSoundOrWhollyFlatStaysAsItIs) {
+  EXPECT_EQ(without_needles(kCheckedBox).triangles, kCheckedBox.triangles);
+  const TriangleMesh tiny = box_mesh({1e-12, 1e-12, 1e-12});
+  EXPECT_EQ(without_needles(tiny).triangles, tiny.triangles);
 }
 
 }  // namespace
