@@ -4,9 +4,9 @@
 #include <span>
 
 #include "hw/arm/cob_ids.h"
+#include "hw/arm/saturation_fault.h"
 #include "hw/canopen/emergency.h"
 #include "hw/canopen/heartbeat.h"
-#include "hw/canopen/object_setting.h"
 #include "hw/cia402/drive_state.h"
 #include "shared/canopen/constants.h"
 
@@ -143,11 +143,8 @@ void ArmIntake::judge_force(const Vector3& force_N) noexcept {
 }
 
 void ArmIntake::take_wrench(const WrenchIntake::Sample& sample) noexcept {
-  if (const auto& saturated = wrench_intake_.saturated()) {
-    const auto sub = static_cast<std::uint8_t>(saturated->axis + 1);
-    supervision_.raise({ArmFaultKind::kSensorInvalid, sensor_node_,
-                        canopen::object_of(tenon::canopen::kForceInputs, sub),
-                        static_cast<std::uint16_t>(saturated->raw)});
+  if (wrench_intake_.saturated()) {
+    supervision_.raise(saturation_fault(sensor_node_, *wrench_intake_.saturated()));
   }
   feedback_.wrench = sample.wrench;
   wrench_late_ = !cycle_open_;

@@ -7,6 +7,7 @@
 #include "hw/arm/arm_supervision.h"
 #include "hw/arm/bring_up.h"
 #include "hw/arm/node_settings.h"
+#include "hw/arm/saturation_fault.h"
 #include "hw/canopen/emergency.h"
 #include "hw/canopen/object_setting.h"
 #include "hw/canopen/sdo.h"
@@ -154,20 +155,22 @@ std::string unexpected_reset(const ArmFault& fault) {
 }
 
 std::string sensor_invalid(const ArmFault& fault, const Robot& robot) {
+  const unsigned place = (fault.object & 0xFFu) - 1;
+  if (const auto reading = saturated_reading(fault)) {
+    static constexpr const char* kAxes[] = {"fx", "fy", "fz", "tx", "ty", "tz"};
+    const bool force = place < 3;
+    return format(
+        "%s = %.2f %s is at or beyond the range of %.2f; the load is too high or the "
+        "sensor is damaged",
+        place < 6 ? kAxes[place] : "?", *reading, force ? "N" : "Nm",
+        force ? robot.sensor.force_range_N : robot.sensor.torque_range_Nm);
+  }
   switch (fault.object >> 8) {
-    case tenon::canopen::kForceInputs: {
-      static constexpr const char* kAxes[] = {"fx", "fy", "fz", "tx", "ty", "tz"};
-      const std::uint32_t axis = (fault.object & 0xFFu) - 1;
-      const bool force = axis < 3;
-      const double scale =
-          force ? robot.sensor.force_per_count_N : robot.sensor.torque_per_count_Nm;
-      const double range = force ? robot.sensor.force_range_N : robot.sensor.torque_range_Nm;
-      const auto counts = static_cast<std::int16_t>(static_cast<std::uint16_t>(fault.code));
+    case tenon::canopen::kForceInputs:
       return format(
-          "%s = %.2f %s is at or beyond the range of %.2f; the load is too high or the "
-          "sensor is damaged",
-          axis < 6 ? kAxes[axis] : "?", counts * scale, force ? "N" : "Nm", range);
-    }
+          "its raw value %u of 6 is %d, the end of its 16 bits; the load is too high or the sensor "
+          "is damaged",
+          place + 1, static_cast<int>(static_cast<std::int16_t>(fault.code)));
     case tenon::canopen::kSensorStatus:
       return format("reports status 0x%04X (2002h) where 0 is good; check the sensor", fault.code);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <optional>
 
 namespace tenon::hw {
 namespace {
@@ -36,13 +37,17 @@ WrenchSource::Taken WrenchIntake::take(const CanFrame& frame) noexcept {
 void WrenchIntake::take_sample(const WrenchPairing::Sample& paired) noexcept {
   sample_ = Sample{source_.wrench(paired.counts), paired.counter};
   for (std::uint8_t axis = 0; axis < 6; ++axis) {
-    const std::int16_t raw = paired.counts[axis];
     const double range = axis < 3 ? sensor_.force_range_N : sensor_.torque_range_Nm;
-    // A range of 0 is not given; the 16 bits still end somewhere.
-    const bool at_end =
-        std::abs(int{raw}) >= kRawEnd || (range > 0.0 && std::abs(sample_->wrench[axis]) >= range);
-    if (!at_end) continue;
-    saturated_ = Saturated{axis, raw};
+    const double reading = sample_->wrench[axis];
+    if (range <= 0.0 || std::abs(reading) < range) continue;
+    saturated_ = Saturated{axis, paired.counts[axis], reading};
+    return;
+  }
+  // A range of 0 is not given; the 16 bits still end somewhere.
+  for (std::uint8_t place = 0; place < 6; ++place) {
+    const std::int16_t raw = paired.counts[place];
+    if (std::abs(int{raw}) < kRawEnd) continue;
+    saturated_ = Saturated{place, raw, std::nullopt};
     return;
   }
 }

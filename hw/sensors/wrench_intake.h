@@ -19,8 +19,11 @@ class WrenchIntake {
     std::uint16_t counter = 0;
   };
   struct Saturated {
-    std::uint8_t axis = 0;  ///< 0 to 5: fx fy fz tx ty tz
-    std::int16_t raw = 0;   ///< the raw value in that place
+    std::uint8_t place = 0;  ///< 0 to 5: fx fy fz tx ty tz of the wrench, or of the raw values
+    std::int16_t raw = 0;    ///< the raw value in that place
+    /// N or Nm of that axis, beyond its range; unset: the raw value is at the end of its 16 bits.
+    /// What a calibration makes of six raw values, no single one of them tells.
+    std::optional<double> reading;
   };
 
   WrenchIntake(WrenchSource& source, const ForceTorqueSensor& sensor)
@@ -37,7 +40,7 @@ class WrenchIntake {
   [[nodiscard]] const std::optional<Vector3>& force_N() const noexcept { return force_N_; }
   /// The whole new sample that the last frame completed.
   [[nodiscard]] const std::optional<Sample>& sample() const noexcept { return sample_; }
-  /// The first axis of that sample that is at the end of its range.
+  /// The first axis of that sample beyond its range, else the first raw value at its end.
   [[nodiscard]] const std::optional<Saturated>& saturated() const noexcept { return saturated_; }
   /// Both halves came since forget_freshness(), of one sample or not.
   [[nodiscard]] bool both_halves_seen() const noexcept { return halves_seen_ == 3; }

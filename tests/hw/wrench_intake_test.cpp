@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hw/arm/describe_fault.h"
+#include "hw/arm/saturation_fault.h"
 #include "hw/sensors/canopen_wrench_source.h"
 
 namespace tenon::hw {
@@ -84,7 +86,7 @@ TEST_F(WrenchIntakeOfCanopenNode, TheFirstAxisAtTheEndOfItsRangeIsNamed) {
   (void)intake.take(canopen_force_frame());
   (void)intake.take(torque);
   ASSERT_TRUE(intake.saturated());
-  EXPECT_EQ(intake.saturated()->axis, 4);
+  EXPECT_EQ(intake.saturated()->place, 4);
   EXPECT_EQ(intake.saturated()->raw, 30000);
 }
 
@@ -140,7 +142,37 @@ TEST(WrenchIntake, TheRangeOfASensorOfAnotherLayoutIsThatOfItsWrenchAndNotOfItsR
   EXPECT_DOUBLE_EQ(intake.sample()->wrench[0], 300.0);  // raw value 5 is 012Ch
   EXPECT_DOUBLE_EQ(intake.sample()->wrench[5], 1.0);
   ASSERT_TRUE(intake.saturated());
-  EXPECT_EQ(intake.saturated()->axis, 0);
+  EXPECT_EQ(intake.saturated()->place, 0);
+}
+
+// What is said of a wrench beyond its range is the wrench, whatever the raw values were made into.
+TEST(WrenchIntake, AFaultTellsTheReadingOfTheWrenchAndNotARawValueScaled) {
+  Robot robot;
+  robot.sensor = intake_test_sensor();
+  HandMadeWrenchSource source;
+  WrenchIntake intake(source, robot.sensor);
+  (void)intake.take({0x50, false, false, 8, {0x00, 0x01, 0x00, 0x02, 0x00, 0x03, 9, 0}});
+  (void)intake.take({0x50, false, false, 8, {0x00, 0x04, 0x00, 0x05, 0xFE, 0xD4, 9, 1}});
+  ASSERT_TRUE(intake.saturated());
+  EXPECT_EQ(describe(saturation_fault(4, *intake.saturated()), robot),
+            "node 4 (force/torque sensor): fx = -300.00 N is at or beyond the range of 300.00; the "
+            "load is too high or the sensor is damaged");
+}
+
+// Gauges that are at their end make a wrench that is anything.
+TEST(WrenchIntake, ARawValueAtItsEndIsToldAsThatAndAsNoAxis) {
+  Robot robot;
+  robot.sensor = intake_test_sensor();
+  robot.sensor.force_range_N = 0.0;  // not given
+  robot.sensor.torque_range_Nm = 0.0;
+  HandMadeWrenchSource source;
+  WrenchIntake intake(source, robot.sensor);
+  (void)intake.take({0x50, false, false, 8, {0x00, 0x01, 0x00, 0x02, 0x00, 0x03, 9, 0}});
+  (void)intake.take({0x50, false, false, 8, {0x00, 0x04, 0x80, 0x00, 0x00, 0x06, 9, 1}});
+  ASSERT_TRUE(intake.saturated());
+  EXPECT_EQ(describe(saturation_fault(4, *intake.saturated()), robot),
+            "node 4 (force/torque sensor): its raw value 5 of 6 is -32768, the end of its 16 bits; "
+            "the load is too high or the sensor is damaged");
 }
 
 }  // namespace
