@@ -1,13 +1,14 @@
 #include "planner/belief/belief.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
 namespace tenon::planner {
 namespace {
 
-constexpr double kCell_m = 1e-4;
-constexpr double kCell_rad = 0.02 * 3.14159265358979323846 / 180.0;
+// The grid's cells, of the goal's tolerance.
+constexpr double kCellOfTolerance = 0.1;
 
 Eigen::Quaterniond mean_orientation(const Belief& belief) {
   // Newton's iteration on the rotation group; quadratic, a few steps.
@@ -128,10 +129,17 @@ void append_cell(const Particle& particle, double cell_m, double cell_rad,
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.latency_s));
 }
 
-BeliefKey identity(const Belief& belief) {
+Grid grid_of(const Task& task) {
+  const Grid coarsest;
+  const double finest_m = kCellOfTolerance * task.goal_tolerance_m;
+  return {std::min(coarsest.cell_m, finest_m),
+          std::min(coarsest.cell_rad, finest_m / metric_of(task).orientation_weight)};
+}
+
+BeliefKey identity(const Belief& belief, const Grid& grid) {
   BeliefKey key;
   for (const Particle& particle : belief.particles) {
-    append_cell(particle, kCell_m, kCell_rad, key);
+    append_cell(particle, grid.cell_m, grid.cell_rad, key);
   }
   return key;
 }

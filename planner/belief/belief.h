@@ -65,12 +65,21 @@ struct Metric {
 /// |position difference| + w_o (angle between), m. A metric.
 [[nodiscard]] double distance(const Pose& a, const Pose& b, const Metric& metric);
 
-/// Two beliefs with equal keys are one state of the search: every particle in the same cell of a
-/// 0.1 mm, 0.02 degree grid (a clearance is a few of them) and with the same contacts. States that
-/// differ only in their contacts differ: pressing and not pressing against a wall have different
-/// successors.
+/// The grid on which beliefs are told apart.
+struct Grid {
+  double cell_m = 1e-4;
+  double cell_rad = 0.02 * 3.14159265358979323846 / 180.0;
+};
+
+/// 0.1 mm and 0.02 degrees (a clearance is a few of them), and at most a tenth of the goal's
+/// tolerance: one state's particles are as far from the goal as each other, but for that.
+[[nodiscard]] Grid grid_of(const Task& task);
+
+/// Two beliefs with equal keys are one state of the search: every particle in the same cell and
+/// with the same contacts. States that differ only in their contacts differ: pressing and not
+/// pressing against a wall have different successors.
 using BeliefKey = std::vector<std::int64_t>;
-[[nodiscard]] BeliefKey identity(const Belief& belief);
+[[nodiscard]] BeliefKey identity(const Belief& belief, const Grid& grid);
 
 /// The cell of one particle on a grid of that size.
 void append_cell(const Particle& particle, double cell_m, double cell_rad,

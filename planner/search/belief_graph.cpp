@@ -30,7 +30,11 @@ bool slides_off(const Belief& before, const Belief& after, const Vector6& displa
 
 BeliefGraph::BeliefGraph(const Task& task, const Belief& start, Attractors attractors,
                          SuccessorEngine& succ)
-    : task_(task), attractors_(std::move(attractors)), succ_(succ), steps_(step_primitives(task)) {
+    : task_(task),
+      grid_(grid_of(task)),
+      attractors_(std::move(attractors)),
+      succ_(succ),
+      steps_(step_primitives(task)) {
   number(start);
 }
 
@@ -88,7 +92,7 @@ std::optional<Primitive> BeliefGraph::direct(StateId state, std::size_t goal) co
 
 StateId BeliefGraph::number(const Belief& belief) {
   const auto [entry, fresh] =
-      numbers_.try_emplace(identity(belief), static_cast<StateId>(beliefs_.size()));
+      numbers_.try_emplace(identity(belief, grid_), static_cast<StateId>(beliefs_.size()));
   if (fresh) {
     beliefs_.push_back(belief);
     summaries_.push_back(summarise(belief, task_));

@@ -40,6 +40,7 @@ class BeliefGraph final : public SearchGraph {
   StateId number(const Belief& belief);
 
   const Task& task_;
+  Grid grid_;
   Attractors attractors_;
   SuccessorEngine& succ_;
   std::vector<Primitive> steps_;

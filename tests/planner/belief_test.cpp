@@ -131,15 +131,31 @@ TEST(Belief, DistanceAddsTranslationAndAngle) {
 }
 
 TEST(Belief, IdentityTellsContactsApartAndForgivesMicrometres) {
+  const Grid grid;
   const Belief one{{at(0.1, 0.2)}};
   Belief other = one;
   other.particles[0].pose.position_m.x() += 1e-5;
-  EXPECT_EQ(identity(one), identity(other));
+  EXPECT_EQ(identity(one, grid), identity(other, grid));
   other.particles[0].signature.bits = ContactSignature::bit(0, -1);
-  EXPECT_NE(identity(one), identity(other));
+  EXPECT_NE(identity(one, grid), identity(other, grid));
   other = one;
   other.particles[0].pose.position_m.x() += 2e-3;
-  EXPECT_NE(identity(one), identity(other));
+  EXPECT_NE(identity(one, grid), identity(other, grid));
+}
+
+TEST(Belief, StatesAreToldApartFinerThanTheGoalsTolerance) {
+  // Ten micrometres, less than a cell where the goal asks for nothing finer.
+  Task task = room_task();
+  EXPECT_EQ(grid_of(task).cell_m, Grid{}.cell_m);
+  task.goal_tolerance_m = 1e-5;
+  for (const double off_m : {0.3e-5, 0.6e-5, 0.9e-5}) {
+    const Belief inside{{at(0.1 + off_m, 0.2)}};
+    const Belief outside{{at(0.1 + off_m + task.goal_tolerance_m, 0.2)}};
+    EXPECT_NE(identity(inside, grid_of(task)), identity(outside, grid_of(task)));
+  }
+  const Belief straight{{at(0.1, 0.2)}};
+  const Belief turned{{at(0.1, 0.2, {0.0, 0.0, task.goal_tolerance_m / task.orientation_weight})}};
+  EXPECT_NE(identity(straight, grid_of(task)), identity(turned, grid_of(task)));
 }
 
 }  // namespace
