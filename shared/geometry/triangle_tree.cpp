@@ -150,7 +150,9 @@ bool TriangleTree::within(const Vector3& point_m, double radius_m, std::size_t c
     NearestOnTriangle own = reach;
     own.triangle = kNone;
     leaf.shape.offer(point_m, leaf.triangle, own);
-    if (own.triangle != kNone) triangles.push_back(leaf.triangle);
+    if (own.triangle == kNone) return;
+    triangles.push_back(leaf.triangle);
+    if (triangles.size() > count_max) reach.square_m2 = -1.0;  // enough is known
   });
   if (triangles.size() > count_max) triangles.clear();
   std::sort(triangles.begin(), triangles.end());

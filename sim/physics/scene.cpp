@@ -58,6 +58,8 @@ void Scene::set_oversize(double oversize_m) {
 }
 
 Scene::Contacts Scene::find_contacts(bool turns) {
+  seen_ = body_pose();
+  seen_m_ = moved_m_;
   points_.clear();
   touching_.clear();
   clear_until_m_ = std::numeric_limits<double>::infinity();
@@ -86,9 +88,33 @@ void Scene::moved_anywhere() {
     if (watched.surfaces) watched.surfaces->forget();
   }
   moved_m_ = 0.0;
+  seen_m_ = 0.0;
   clear_until_m_ = 0.0;
   points_.clear();
   touching_.clear();
+}
+
+void Scene::placed() {
+  // Longer ways leave too little of a double for what is small.
+  constexpr double kLongWay_m = 100.0;
+  if (moved_m_ > kLongWay_m) return moved_anywhere();
+  look_where();
+  points_.clear();
+  touching_.clear();
+}
+
+void Scene::look_where() {
+  const Pose now = body_pose();
+  const double way_m = (now.position_m - seen_.position_m).norm() +
+                       reach_m() * now.orientation.angularDistance(seen_.orientation);
+  moved_m_ = std::max(moved_m_, seen_m_ + way_m);
+  seen_ = now;
+  seen_m_ = moved_m_;
+}
+
+Pose Scene::body_pose() const {
+  const dBodyID body = dGeomGetBody(held_.front().id());
+  return body == nullptr ? held_.front().pose() : pose_of(body);
 }
 
 void Scene::touch(Watched& watched, bool turns, PairPoints& buffer) {
@@ -140,7 +166,8 @@ double Scene::reach_m() const {
   return reach_m;
 }
 
-double Scene::overlap_m() const {
+double Scene::overlap_m() {
+  look_where();
   double overlap_m = 0.0;
   PairPoints buffer;
   for (const Watched& watched : watched_) {
@@ -149,9 +176,7 @@ double Scene::overlap_m() const {
     if (held.separation_m(environment) > 0.0) continue;
     if (watched.surfaces) {
       std::vector<dContactGeom> points;
-      watched.surfaces->forget();
       touch_surfaces(watched, points);
-      watched.surfaces->forget();
       overlap_m = std::max(overlap_m, deepest_m(points));
     } else {
       const auto one = prism_contact(held, environment);

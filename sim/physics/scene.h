@@ -59,6 +59,9 @@ class Scene {
   void moved(double at_most_m) { moved_m_ += at_most_m; }
   /// It may be anywhere now, and touches nothing that is known of.
   void moved_anywhere();
+  /// The same where what it is attached to has been put somewhere: from there it is found out how
+  /// far that is, and what is known of surfaces near by goes on to hold.
+  void placed();
   /// No point of the held part is farther than this from its body's origin.
   [[nodiscard]] double reach_m() const;
 
@@ -67,7 +70,7 @@ class Scene {
   [[nodiscard]] Vector6 wrench() const { return joints_.wrench(); }
 
   /// Deepest overlap at the body's present pose, m; 0 where nothing touches.
-  [[nodiscard]] double overlap_m() const;
+  [[nodiscard]] double overlap_m();
 
   /// Indices of two shapes that touch.
   struct Pair {
@@ -90,6 +93,10 @@ class Scene {
     double apart_until_m = 0.0;                ///< on the way that the held part has moved
     std::unique_ptr<SurfaceContact> surfaces;  ///< where one of the two is a solid
   };
+  /// Looks how far the body has come from where it was last looked at.
+  void look_where();
+  /// Of the held part; its own where it hangs on none.
+  [[nodiscard]] Pose body_pose() const;
   /// Adds the points of two shapes that are near.
   void touch(Watched& watched, bool turns, PairPoints& buffer);
   /// How the surfaces of two shapes stand to each other.
@@ -101,6 +108,8 @@ class Scene {
   std::vector<Watched> watched_;  // all pairs
   bool solids_ = false;           // among the shapes
   double moved_m_ = 0.0;
+  Pose seen_;            ///< where the held part's body was last looked at
+  double seen_m_ = 0.0;  ///< the way until then
   double clear_until_m_ = 0.0;
   double oversize_m_ = 0.0;
   std::vector<dContactGeom> points_;  // of the last contacts, thinned out

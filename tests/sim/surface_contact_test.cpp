@@ -194,6 +194,47 @@ TEST(SurfaceContact, NothingIsForgottenOnTheWay) {
   EXPECT_LT(touched, 2900);
 }
 
+TEST(SurfaceContact, APartThatIsPutSomewhereTouchesAsIfNothingWereKnown) {
+  const Shape peg =
+      solid_shape("peg", extruded(tests::round_profile(0.01, 30), 0.06), at(0, 0, 0.03));
+  OdeWorld world;
+  CompliantTool tool(world, {});
+  Scene watched({peg}, as_solids(pocket(0.021)));
+  Scene fresh({peg}, as_solids(pocket(0.021)));
+  watched.attach(tool.body());
+  fresh.attach(tool.body());
+  Random random(11);
+  Pose pose = at(0, 0, 0.001);
+  int touched = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const bool far = i % 10 == 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      pose.position_m[axis] += (far ? 5e-3 : 3e-4) * (random.uniform() - 0.5);
+    }
+    pose.position_m += (far ? 0.5 : 0.02) * (Vector3(0, 0, -0.002) - pose.position_m);
+    pose.orientation = rotation_of({0.02 * random.uniform(), 0.0, 0.05 * random.uniform()});
+    tool.place(pose);
+    tool.show();
+    watched.placed();
+    fresh.moved_anywhere();
+    if (i % 3 == 0) {
+      EXPECT_EQ(watched.overlap_m(), fresh.overlap_m()) << i;
+    }
+    fresh.moved_anywhere();
+    (void)watched.find_contacts(true);
+    (void)fresh.find_contacts(true);
+    ASSERT_EQ(watched.points().size(), fresh.points().size()) << i;
+    for (std::size_t p = 0; p < fresh.points().size(); ++p) {
+      // To the bit: what is known decides nothing.
+      EXPECT_EQ(watched.points()[p].depth, fresh.points()[p].depth) << i;
+      EXPECT_EQ(watched.points()[p].pos[2], fresh.points()[p].pos[2]) << i;
+    }
+    touched += !fresh.points().empty();
+  }
+  EXPECT_GT(touched, 300);
+  EXPECT_LT(touched, 1450);
+}
+
 TEST(SurfaceContact, ALargerPartStandsOutOnAllSides) {
   const Shape peg = solid_shape("peg", box_mesh({0.04, 0.04, 0.08}), at(0, 0, 0.04));
   OdeWorld world;

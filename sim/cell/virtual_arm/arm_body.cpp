@@ -111,7 +111,7 @@ LinkInertia ArmBody::with_payload(const Cell& cell, const LinkInertia& link) {
 
 void ArmBody::step(std::span<const ServoJoint::Demand> demands, double step_s) {
   drive(demands, step_s);
-  scene_.moved_anywhere();
+  scene_.placed();
   scene_.find_contacts(/*turns=*/true);
   scene_.make_joints(world_, step_s, contact_law_);
   const std::uint64_t messages_before = ode_messages();

@@ -52,6 +52,8 @@ class ArmBody {
   [[nodiscard]] double contact_force_N() const { return scene_.wrench().head<3>().norm(); }
   /// Part and environment, and what touched in the last step.
   [[nodiscard]] const Scene& scene() const { return scene_; }
+  /// Deepest overlap of the part and the environment as they stand, m.
+  [[nodiscard]] double overlap_m() { return scene_.overlap_m(); }
   /// Messages of the solver so far: steps that it did not solve.
   [[nodiscard]] std::uint64_t solver_messages() const { return solver_messages_; }
 

@@ -97,10 +97,10 @@ class VirtualCell::Impl {
       if (twin != options_.twins.end()) drive.become_twin(twin->second);
     }
     check_twins();
-    if (arm_.scene().overlap_m() > kOverlapMax_m) {
+    if (arm_.overlap_m() > kOverlapMax_m) {
       throw InputError(
           "task " + task.name + ": at start \"" + start_name_ + "\" the part stands " +
-          std::to_string(arm_.scene().overlap_m()) +
+          std::to_string(arm_.overlap_m()) +
           " m deep in the displaced environment; choose another start, seed or offset");
     }
     for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].measured(measure(i), 0);

@@ -8,6 +8,12 @@ namespace {
 
 // What is farther away is not looked at one by one.
 constexpr double kNear_m = 1e-3;
+// A ball that may come near within this is looked at anew together with the others.
+constexpr double kSoon_m = 0.5e-3;
+// A point that is asked for again within this is worth remembering what it can be nearest to, for
+// the first of these ways, or where that is too much for the second.
+constexpr double kAgain_m = 0.25e-3;
+constexpr double kFineWay_m = 0.15e-3;
 // Looked at anew so much earlier than need be, so that rounding decides nothing.
 constexpr double kEarly_m = 1e-9;
 
@@ -50,14 +56,22 @@ SurfaceContact::SurfaceContact(const Surface& held, const Surface& environment) 
   held_.surface = environment_.edges = &environment;
   for (Side* side : {&held_, &environment_}) {
     side->points.resize(side->edges->points_m().size());
+    side->balls.resize(side->edges->balls().size());
+    side->apart_until_m.resize(side->edges->pieces().size());
   }
+  forget();
 }
 
 void SurfaceContact::forget() {
   for (Side* side : {&held_, &environment_}) {
     side->near.clear();
     side->complete_until_m = 0.0;
-    for (Side::Point& point : side->points) point.parts_until_m = 0.0;
+    std::fill(side->apart_until_m.begin(), side->apart_until_m.end(), 0.0);
+    std::fill(side->balls.begin(), side->balls.end(), Side::Ball{});
+    for (Side::Point& point : side->points) {
+      point.parts_until_m = point.dense_until_m = 0.0;
+      point.asked_m = -kNear_m;
+    }
   }
 }
 
@@ -73,9 +87,21 @@ const Surface::Place& SurfaceContact::place(Side& side, std::uint32_t index, con
     return place;
   }
   place = side.surface->place(point_m, place.guess);
-  const bool known = side.surface->nearby(point_m, place, kNear_m, point.parts);
-  point.parts_until_m = known ? moved_m + kNear_m : 0.0;
+  if (moved_m - point.asked_m < kAgain_m && point.dense_until_m <= moved_m) {
+    remember_parts(side, point, point_m, moved_m);
+  }
+  point.asked_m = moved_m;
   return place;
+}
+
+void SurfaceContact::remember_parts(const Side& side, Side::Point& point, const Vector3& point_m,
+                                    double moved_m) const {
+  for (const double way_m : {kNear_m, kFineWay_m}) {
+    if (!side.surface->nearby(point_m, point.place, way_m, point.parts)) continue;
+    point.parts_until_m = moved_m + way_m;
+    return;
+  }
+  point.dense_until_m = moved_m + kNear_m;
 }
 
 void SurfaceContact::gather(Side& side, const Pose& X_SE, const Stand& stand) {
@@ -83,27 +109,30 @@ void SurfaceContact::gather(Side& side, const Pose& X_SE, const Stand& stand) {
   side.complete_until_m = std::numeric_limits<double>::infinity();
   const std::vector<Surface::Ball>& balls = side.edges->balls();
   if (balls.empty()) return;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> waiting = {{0, 0}};  // ball, guess
+  std::vector<std::uint32_t> waiting = {0};
   while (!waiting.empty()) {
-    const auto [index, guess] = waiting.back();
+    const Surface::Ball& ball = balls[waiting.back()];
+    Side::Ball& known = side.balls[waiting.back()];
     waiting.pop_back();
-    const Surface::Ball& ball = balls[index];
-    const Surface::Place at = side.surface->place(point_in(X_SE, ball.centre_m), guess);
-    const double gap_m = at.distance_m - ball.radius_m - stand.offset_m;
-    if (gap_m > kNear_m) {
-      side.complete_until_m = std::min(side.complete_until_m, stand.moved_m + gap_m - kEarly_m);
+    if (known.far_until_m <= stand.moved_m + kSoon_m && known.near_until_m <= stand.moved_m) {
+      const Surface::Place at = side.surface->place(point_in(X_SE, ball.centre_m), known.guess);
+      const double gap_m = at.distance_m - ball.radius_m - stand.offset_m;
+      known.guess = at.guess;
+      known.far_until_m = gap_m > kNear_m ? stand.moved_m + gap_m - kEarly_m : 0.0;
+      known.near_until_m = gap_m > kNear_m ? 0.0 : stand.moved_m + kNear_m - gap_m;
+    }
+    if (known.far_until_m > stand.moved_m) {
+      side.complete_until_m = std::min(side.complete_until_m, known.far_until_m);
     } else if (ball.child != 0) {
-      waiting.emplace_back(ball.child, at.guess);
-      waiting.emplace_back(ball.child + 1, at.guess);
+      waiting.push_back(ball.child);
+      waiting.push_back(ball.child + 1);
     } else {
-      for (std::uint32_t i = 0; i < ball.count; ++i) {
-        side.near.push_back({side.edges->order()[ball.first + i], 0.0});
-      }
+      const auto first = side.edges->order().begin() + ball.first;
+      side.near.insert(side.near.end(), first, first + ball.count);
     }
   }
   // In the order of the surface itself: the solver sees the same whatever the way here.
-  std::sort(side.near.begin(), side.near.end(),
-            [](const Side::Near& a, const Side::Near& b) { return a.piece < b.piece; });
+  std::sort(side.near.begin(), side.near.end());
 }
 
 void SurfaceContact::add(const Found& found, const Stand& stand,
@@ -114,10 +143,10 @@ void SurfaceContact::add(const Found& found, const Stand& stand,
                               found.held ? outwards : Vector3(-outwards), found.depth_m));
 }
 
-double SurfaceContact::look_at(Side& side, const Side::Near& near, const Pose& X_SE,
+double SurfaceContact::look_at(Side& side, std::uint32_t index, const Pose& X_SE,
                                const Stand& stand) {
   const Surface& edges = *side.edges;
-  const Surface::Piece& piece = edges.pieces()[near.piece];
+  const Surface::Piece& piece = edges.pieces()[index];
   const bool held = &side == &held_;
   const auto end = [&](std::uint32_t point) -> const Surface::Place& {
     const bool first = side.points[point].time != time_;
@@ -175,12 +204,13 @@ double SurfaceContact::find(const Stand& stand, std::vector<dContactGeom>& point
     const Pose X_SE =
         held ? compose(inverse(stand.X_WE), stand.X_WH) : compose(inverse(stand.X_WH), stand.X_WE);
     if (side->complete_until_m <= stand.moved_m) gather(*side, X_SE, stand);
-    for (Side::Near& near : side->near) {
-      if (near.until_m <= stand.moved_m) {
-        const double gap_m = look_at(*side, near, X_SE, stand);
-        near.until_m = stand.moved_m + std::max(0.0, gap_m - kEarly_m);
+    for (const std::uint32_t piece : side->near) {
+      double& apart_until_m = side->apart_until_m[piece];
+      if (apart_until_m <= stand.moved_m) {
+        const double gap_m = look_at(*side, piece, X_SE, stand);
+        apart_until_m = stand.moved_m + std::max(0.0, gap_m - kEarly_m);
       }
-      until_m = std::min(until_m, near.until_m);
+      until_m = std::min(until_m, apart_until_m);
     }
     until_m = std::min(until_m, side->complete_until_m);
   }

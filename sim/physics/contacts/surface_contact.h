@@ -36,23 +36,32 @@ class SurfaceContact {
   struct Side {
     const Surface* edges = nullptr;
     const Surface* surface = nullptr;
-    struct Near {
-      std::uint32_t piece = 0;
-      double until_m = 0.0;  ///< not to be looked at before
+    std::vector<std::uint32_t> near;    ///< pieces
+    double complete_until_m = 0.0;      ///< what is not in `near` touches nothing before
+    std::vector<double> apart_until_m;  ///< of every piece: not to be looked at before
+    /// What is known of a ball around pieces.
+    struct Ball {
+      double far_until_m = 0.0;   ///< what is in it touches nothing before
+      double near_until_m = 0.0;  ///< it may, all that time
+      std::uint32_t guess = 0;
     };
-    std::vector<Near> near;
-    double complete_until_m = 0.0;  ///< what is not in `near` touches nothing before
+    std::vector<Ball> balls;
     struct Point {
       Surface::Place place;              ///< in the surface's frame
       std::uint64_t time = 0;            ///< when it was
       std::vector<std::uint32_t> parts;  ///< of the surface, that it can be nearest to
       double parts_until_m = 0.0;        ///< before that
+      double asked_m = 0.0;              ///< when all of the surface was last asked
+      double dense_until_m = 0.0;        ///< the parts are too many before
     };
     std::vector<Point> points;  ///< of the edges
   };
   void gather(Side& side, const Pose& X_SE, const Stand& stand);
   const Surface::Place& place(Side& side, std::uint32_t point, const Pose& X_SE, double moved_m);
-  double look_at(Side& side, const Side::Near& near, const Pose& X_SE, const Stand& stand);
+  void remember_parts(const Side& side, Side::Point& point, const Vector3& point_m,
+                      double moved_m) const;
+  /// @return a gap, m
+  double look_at(Side& side, std::uint32_t piece, const Pose& X_SE, const Stand& stand);
 
   /// In the frame of the surface that is touched.
   struct Found {

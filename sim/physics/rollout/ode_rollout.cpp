@@ -79,7 +79,7 @@ struct OdeRollout::Physics {
     tool.place(particle.pose);
     scene.place_environment(particle.environment);
     scene.set_oversize(particle.physics.oversize_m);
-    scene.moved_anywhere();
+    scene.placed();
     wrench.setZero();
   }
 
