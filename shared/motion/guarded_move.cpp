@@ -374,11 +374,20 @@ bool GuardedMove::slower_than(double speed_mps, double speed_radps) const {
     const std::int64_t window_ns = now.time_ns - then.time_ns;
     if (window_ns < kRestWindow_ns && back + 1 < kMemory) continue;
     const double window_s = kNanosecond_s * static_cast<double>(window_ns);
-    const Vector6 moved = displacement_between(then.pose, now.pose);
-    return moved.head<3>().norm() < speed_mps * window_s &&
-           moved.tail<3>().norm() < speed_radps * window_s;
+    return stayed(back, speed_mps * window_s, speed_radps * window_s);
   }
   return false;
+}
+
+// What turns back amid the window is at both of its ends where it was.
+bool GuardedMove::stayed(std::size_t moments, double way_m, double way_rad) const {
+  const Moment& now = memory_[(remembered_ - 1) % kMemory];
+  for (std::size_t back = 1; back <= moments; ++back) {
+    const Moment& then = memory_[(remembered_ - 1 - back) % kMemory];
+    const Vector6 moved = displacement_between(then.pose, now.pose);
+    if (moved.head<3>().norm() >= way_m || moved.tail<3>().norm() >= way_rad) return false;
+  }
+  return true;
 }
 
 }  // namespace tenon

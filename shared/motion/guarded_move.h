@@ -120,7 +120,10 @@ class GuardedMove {
   /// While a contact is being made the tool presses on into those that it holds already; which of
   /// them are left shows when it is at rest.
   [[nodiscard]] ContactSignature kept() const;
+  /// Over the whole window that rest is judged by.
   [[nodiscard]] bool slower_than(double speed_mps, double speed_radps) const;
+  /// Whether none of the last so many moments is this far from the present one.
+  [[nodiscard]] bool stayed(std::size_t moments, double way_m, double way_rad) const;
   void remember(const Input& input);
   /// From the update before to this one; 0 at the first.
   [[nodiscard]] double step_s() const;

@@ -251,6 +251,38 @@ TEST(OdeRollout, SlidingOffALedgeIsARelease) {
   EXPECT_NEAR(result.move.travelled[1], 0.1, 3e-3);
 }
 
+// A tool that runs in deep, seen late, is pushed out again: where it turns back it stands still.
+//
+//   depth  |    _      turns back here: as deep 20 ms ago as now
+//          |  /   \__
+//          |_/       \____________ rests under the keep force
+TEST(OdeRollout, WhereATurningToolStandsStillItIsNotAtRest) {
+  const Task task = slab(0.5);
+  sim::OdeRollout rollout(task);
+  for (const double latency_s : {0.0, 0.004, 0.01}) {
+    for (int i = 0; i < 40; ++i) {
+      Particle particle;
+      particle.physics.latency_s = latency_s;
+      particle.pose.position_m = {0.0, 0.0, 0.01 + 1e-4 * i};
+      MoveParameters move;
+      move.compliance = task.compliance;
+      move.compliance.mass_kg = 2.0;
+      move.compliance.damping_Nspm = 1500.0;
+      move.compliance.stiffness_Npm = 1000.0;
+      move.thresholds.force_on_N = 9.0;
+      move.thresholds.force_keep_N = 3.0;
+      move.thresholds.force_off_N = 1.5;
+      move.speeds.contact_mps = move.speeds.approach_mps = 0.05;
+      move.displacement[2] = -0.05;
+      const auto result = rollout.simulate(particle, move, 2000, nullptr);
+      ASSERT_EQ(result.move.outcome, Outcome::kContact);
+      const double pressed_N =
+          -result.move.pose.position_m.z() * particle.physics.contact_stiffness_Npm;
+      EXPECT_NEAR(pressed_N, move.thresholds.force_keep_N, 1.0) << latency_s << ", " << i;
+    }
+  }
+}
+
 TEST(OdeRollout, RepeatsItselfBitForBitInAnyOrderAndInstance) {
   const Task task = slab(0.5);
   sim::OdeRollout rollout(task);
