@@ -76,7 +76,7 @@ PlanReport planned(const Task& task, const Start& start, std::size_t threads) {
   return make_plan(task, start, sim::OdeRollout(task), options, [] { return 0.0; });
 }
 
-/// Position errors of all draws.
+/// Position errors of all draws that a plan has to hold for.
 struct Errors {
   double mean_m = 0.0;
   double deviation_m = 0.0;
@@ -86,11 +86,12 @@ Errors errors_of(const Validation& validation, const Task& task) {
   double sum_m = 0.0;
   double squares_m2 = 0.0;
   for (const Draw& draw : validation.draws) {
+    if (draw.mahalanobis > task.particle_sigmas) continue;
     const double off_m = (draw.chain.end().position_m - task.goal.position_m).norm();
     sum_m += off_m;
     squares_m2 += off_m * off_m;
   }
-  const auto count = static_cast<double>(validation.draws.size());
+  const auto count = static_cast<double>(validation.within(task.particle_sigmas));
   const double mean_m = sum_m / count;
   return {mean_m, std::sqrt(std::max(0.0, squares_m2 / count - mean_m * mean_m))};
 }
