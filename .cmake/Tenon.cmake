@@ -76,8 +76,7 @@ set(TENON_MAY_USE_tenon-inspect  planner planner_report sim_physics shared_confi
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
                                  executor_loop executor_telemetry hw_can hw_arm hw_load shared_config)
 set(TENON_MAY_USE_tenon-monitor  executor_telemetry shared_config LCM::lcm)
-# Of the executor the virtual arm hears what everybody may: its telemetry.
-set(TENON_MAY_USE_tenon-sim      sim_cell hw_can executor_telemetry shared_eds shared_config)
+set(TENON_MAY_USE_tenon-sim      sim_cell hw_can shared_eds shared_config)
 set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)
 set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 hw_check shared_eds shared_config)
 

@@ -16,7 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include "executor/telemetry/step_listener.h"
 #include "hw/can/open_bus.h"
 #include "hw/can/slcan_server.h"
 #include "shared/base/error.h"
@@ -57,7 +56,6 @@ struct CommandLine {
   std::vector<std::string> faults;
   std::vector<std::string> twins;
   std::string eds;
-  std::string lcm_url;
   std::string json;
   std::string ready_file;
   bool once = false;
@@ -75,8 +73,7 @@ struct Lateness {
   }
 };
 
-Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer* server,
-             executor::StepListener* steps) {
+Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer* server) {
   Lateness lateness;
   sim::OneClient one_client;
   std::int64_t due_ns = monotonic_now_ns();
@@ -86,7 +83,6 @@ Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer*
       lateness.count(now_ns - due_ns);
       due_ns += kTick_ns * ((now_ns - due_ns) / kTick_ns + 1);
     }
-    if (steps != nullptr) steps->listen();
     bus.advance(now_ns);
     cell.step(now_ns, bus);
     if (server != nullptr &&
@@ -141,27 +137,6 @@ std::pair<std::uint8_t, DeviceFile> read_twin(const std::string& text) {
   return {static_cast<std::uint8_t>(node), std::move(device)};
 }
 
-/// Null where no fault waits for a step of the plan.
-std::unique_ptr<executor::StepListener> listen_for_steps(const CommandLine& line,
-                                                         const std::vector<sim::Fault>& faults,
-                                                         sim::FaultPhases& phases) {
-  const bool wanted = std::any_of(faults.begin(), faults.end(), [](const sim::Fault& fault) {
-    return fault.at_step.has_value();
-  });
-  if (wanted && line.lcm_url.empty()) {
-    throw InputError(
-        "--fault at=step: the executor alone knows the plan's step; give --lcm-url, where its "
-        "telemetry goes");
-  }
-  if (!wanted && !line.lcm_url.empty()) {
-    throw InputError("--lcm-url " + line.lcm_url +
-                     ": is for a --fault with at=step:N, and there is none");
-  }
-  if (!wanted) return nullptr;
-  return std::make_unique<executor::StepListener>(
-      line.lcm_url, [&phases](int step) { phases.begin_step(step, monotonic_now_ns()); });
-}
-
 int simulate(const CommandLine& line) {
   check_apart({{"--json", line.json}, {"--ready-file", line.ready_file}},
               {{"--cell", line.cell}, {"--task", line.task}, {"--experiment", line.experiment}});
@@ -189,8 +164,6 @@ int simulate(const CommandLine& line) {
   if (!line.json.empty()) check_writable(line.json);
   sim::FaultPhases phases;
   options.phases = &phases;
-  const std::unique_ptr<executor::StepListener> steps =
-      listen_for_steps(line, options.faults, phases);
   sim::VirtualCell cell(cell_file, task, options);
 
   const std::unique_ptr<CanBus> bus = hw::open_bus(line.can, cell_file.robot.bitrate_bps);
@@ -203,7 +176,7 @@ int simulate(const CommandLine& line) {
   announce(line, *bus);
   sim::FaultyBus faulty_bus(*bus, options.faults, cell_file.robot.master_node, monotonic_now_ns(),
                             &phases);
-  const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr, steps.get());
+  const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr);
 
   sim::Truth truth = cell.truth();
   truth.wakes = lateness.wakes;
@@ -256,10 +229,6 @@ int parse_and_simulate(int argc, char** argv) {
                  "--fault help lists them")
       ->allow_extra_args(false)
       ->each(answer_help);
-  app.add_option(
-      "--lcm-url", line.lcm_url,
-      "where the executor's telemetry comes from, which tells the plan's steps to faults "
-      "with at=step:N");
   app.add_option("--twin", line.twins,
                  "NODE=FILE: that joint's drive answers with the objects, limits and access types "
                  "of an EDS or DCF file; may be repeated")
