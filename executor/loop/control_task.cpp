@@ -40,6 +40,12 @@ bool came_to_its_end(EndReason reason) {
          reason == EndReason::kNotAtGoal;
 }
 
+// Nothing else went wrong: what a brake does is then the run's name.
+bool went_well(EndReason reason) {
+  return reason == EndReason::kPlanDone || reason == EndReason::kMeasured ||
+         reason == EndReason::kNothingMet || reason == EndReason::kStopRequested;
+}
+
 }  // namespace
 
 ControlTask::ControlTask(const Cell& cell, const Parameters& parameters)
@@ -51,6 +57,7 @@ ControlTask::ControlTask(const Cell& cell, const Parameters& parameters)
       supervision_(cell_, kinematics_, parameters.supervision),
       sensor_tare_(SensorTare::parameters_for(cell.robot.sensor, parameters.tare_samples)),
       drift_watch_(drift_parameters(cell.robot.sensor, sensor_tare_, parameters.tare_samples)),
+      brake_watch_(cell_.robot, parameters.brakes),
       joints_(cell_.robot, kinematics_) {
   parameters_.quick_stop_s = std::max(parameters_.quick_stop_s, time_to_rest_s(cell_.robot));
 }
@@ -58,6 +65,7 @@ ControlTask::ControlTask(const Cell& cell, const Parameters& parameters)
 ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& feedback) noexcept {
   motion_ns_ += cycle_ns_;
   if (const auto ending = supervision_.update(feedback, following())) take(*ending);
+  follow_brakes(feedback);
   if (stop_requested_) take(Ending{.reason = EndReason::kStopRequested});
   take(act(feedback));
   const bool about_to_enable = state_ == State::kWaiting || state_ == State::kCatching;
@@ -116,7 +124,7 @@ ControlTask::Turn ControlTask::enter_state(State state) {
     joints_.rest_at(supervision_.joints());
     tare_low_ = tare_high_ = supervision_.joints();
   }
-  if (state == State::kQuickStopping || state == State::kWatching) {
+  if (state == State::kQuickStopping) {
     rest_at_ = supervision_.joints();
     rest_cycles_ = 0;
   }
@@ -124,21 +132,25 @@ ControlTask::Turn ControlTask::enter_state(State state) {
 }
 
 // A fault takes precedence over an orderly end, and what the end reveals over that the plan is
-// done; else the first stays.
+// done; else the first stays. What was seen of the drives after it stays with either.
 Event ControlTask::remember(const Ending& ending) {
   on_ending(ending);
   const bool fault = end_manner(ending.reason) == EndManner::kQuickStop;
   const bool first = ending_.reason == EndReason::kNone;
-  const bool worse = fault && end_manner(ending_.reason) != EndManner::kQuickStop &&
-                     (state_ < State::kDisabling || ending.reason == EndReason::kBrakeFailed);
+  const bool slipped = ending.reason == EndReason::kBrakeFailed;
+  const bool worse = slipped ? went_well(ending_.reason)
+                             : fault && end_manner(ending_.reason) != EndManner::kQuickStop &&
+                                   state_ < State::kDisabling;
   const bool revealed = ending.reason == EndReason::kZeroMoved;
   if (first || worse || revealed) {
-    const bool disable_confirmed = ending_.disable_confirmed;
+    const Ending before = ending_;
     ending_ = ending;
-    ending_.disable_confirmed = disable_confirmed;
+    ending_.disable_confirmed = before.disable_confirmed;
+    ending_.brakes_unwatched = before.brakes_unwatched;
   }
+  if (slipped) ending_.slip = {ending.index, ending.value, ending.bound};
   if (came_to_its_end(ending.reason)) return Event::kWorkEnded;
-  if (ending.reason == EndReason::kBrakeFailed) return Event::kBrakeFailed;
+  if (slipped) return Event::kBrakeFailed;
   return fault ? Event::kFault : Event::kStop;
 }
 
@@ -282,10 +294,8 @@ ControlTask::Turn ControlTask::wait_for_rest(const ArmFeedback& feedback) {
 }
 
 ControlTask::Turn ControlTask::wait_for_disabled(const ArmFeedback& feedback) {
-  // In a fault the arm's state stays one: the drives' own words count. A bus that is gone brings
-  // none.
-  const bool off = feedback.state == ArmState::kDisabled ||
-                   feedback.state == ArmState::kUnconfigured || feedback.joints_off == all_joints();
+  const bool off =
+      joints_off(feedback) == all_joints() || feedback.state == ArmState::kUnconfigured;
   const double patience_s =
       feedback.joints_fresh == 0 ? parameters_.quick_stop_s : parameters_.disable_timeout_s;
   if (!off && time_in_state_s() < patience_s) return {};
@@ -293,28 +303,36 @@ ControlTask::Turn ControlTask::wait_for_disabled(const ArmFeedback& feedback) {
   return Event::kDisabled;
 }
 
-ControlTask::Turn ControlTask::watch_brakes() const {
-  const bool told = ending_.reason == EndReason::kBrakeFailed;
-  if (told || !ending_.disable_confirmed) return Event::kHeld;
-  for (std::size_t i = 0; i < cell_.robot.joints.size(); ++i) {
-    const bool turns = cell_.robot.joints[i].kind == Joint::Kind::kRevolute;
-    const double play = turns ? parameters_.brake_play_rad : parameters_.brake_play_m;
-    const double moved = std::abs(supervision_.joints()[i] - rest_at_[i]);
-    if (moved <= play) continue;
+// In a fault the arm's state stays one: the drives' own words count. A bus that is gone brings
+// none.
+std::uint32_t ControlTask::joints_off(const ArmFeedback& feedback) const {
+  return feedback.state == ArmState::kDisabled ? all_joints() : feedback.joints_off;
+}
+
+void ControlTask::follow_brakes(const ArmFeedback& feedback) {
+  brake_watch_.update(supervision_.joints(), feedback.joints_fresh, joints_off(feedback));
+}
+
+// After every end, and each for itself: one drive that is still on, or silent, hides no other's.
+ControlTask::Turn ControlTask::watch_brakes() {
+  const bool told = ending_.slip.joint >= 0;
+  if (!told && time_in_state_s() < parameters_.brake_watch_s) {
+    const auto slip = brake_watch_.slip();
+    if (!slip) return {};
     return Ending{.reason = EndReason::kBrakeFailed,
-                  .index = static_cast<int>(i),
-                  .value = moved,
-                  .bound = play};
+                  .index = slip->joint,
+                  .value = slip->moved,
+                  .bound = slip->bound};
   }
-  return time_in_state_s() >= parameters_.brake_watch_s ? Turn(Event::kHeld) : Turn();
+  ending_.brakes_unwatched = brake_watch_.unwatched();
+  return Event::kHeld;
 }
 
 // Until the user has something under the arm, and says so. An arm in a fault holds nothing, however
 // long one waits.
 ControlTask::Turn ControlTask::keep_power(const ArmFeedback& feedback) const {
-  const bool brake = ending_.reason == EndReason::kBrakeFailed;
   const bool holds = cell_.hold_if_brake_fails && feedback.state != ArmState::kFault;
-  return brake && holds ? Turn() : Turn(Event::kStop);
+  return holds ? Turn() : Turn(Event::kStop);
 }
 
 std::uint32_t ControlTask::all_joints() const { return (1U << cell_.robot.joints.size()) - 1U; }
@@ -329,9 +347,8 @@ void ControlTask::write_record(std::int64_t now_ns, const ArmFeedback& feedback,
   r.arm_state = feedback.state;
   r.request = command.request;
   r.end_reason = static_cast<std::uint8_t>(ending_.reason);
-  r.end_index = ending_.index;
-  r.end_value = ending_.value;
-  r.end_bound = ending_.bound;
+  r.slip = ending_.slip;
+  r.brakes_unwatched = ending_.brakes_unwatched;
   r.wrench_fresh = supervision_.wrench_usable();
   r.pose = data_of(supervision_.tool());
   r.wrench = data_of(supervision_.wrench());

@@ -19,6 +19,7 @@
 #include "executor/motion/joint_command.h"
 #include "executor/motion/tool_kinematics.h"
 #include "executor/record/cycle_record.h"
+#include "executor/sensing/brake_watch.h"
 #include "executor/sensing/drift_watch.h"
 #include "executor/sensing/sensor_tare.h"
 #include "executor/states/ending.h"
@@ -39,9 +40,8 @@ class ControlTask {
     double hold_s = 0.2;
     double quick_stop_s = 0.5;  ///< left to the drives to ramp down; more where a joint needs more
     double brake_watch_s =
-        kBrakeWatch_s;             ///< after the drives are off; more than a brake takes to close
-    double brake_play_rad = 2e-3;  ///< that a joint may move with its brake closed
-    double brake_play_m = 5e-4;
+        kBrakeWatch_s;  ///< after the drives are off; more than a brake takes to close
+    BrakeWatch::Parameters brakes;
     Supervision::Parameters supervision;
     FaultMask masked;  ///< in tests alone: these end no run
   };
@@ -145,7 +145,9 @@ class ControlTask {
   [[nodiscard]] std::optional<Ending> watch_drift(const Vector6& sample);
   [[nodiscard]] Turn wait_for_rest(const ArmFeedback& feedback);
   [[nodiscard]] Turn wait_for_disabled(const ArmFeedback& feedback);
-  [[nodiscard]] Turn watch_brakes() const;
+  [[nodiscard]] std::uint32_t joints_off(const ArmFeedback& feedback) const;
+  void follow_brakes(const ArmFeedback& feedback);
+  [[nodiscard]] Turn watch_brakes();
   [[nodiscard]] Turn keep_power(const ArmFeedback& feedback) const;
   void write_record(std::int64_t now_ns, const ArmFeedback& feedback, const Command& command);
 
@@ -158,6 +160,7 @@ class ControlTask {
   SensorTare sensor_tare_;
   int unsteady_tares_ = 0;
   DriftWatch drift_watch_;
+  BrakeWatch brake_watch_;
   std::optional<Ending> drift_;  ///< of the tare
   JointCommand joints_;
 
@@ -170,7 +173,7 @@ class ControlTask {
 
   JointVector tare_low_{};
   JointVector tare_high_{};
-  JointVector rest_at_{};  ///< where the joints were when they last moved, or the drives went off
+  JointVector rest_at_{};  ///< where the joints were when they last moved
   int rest_cycles_ = 0;
   CycleRecord record_;
 };

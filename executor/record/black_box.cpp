@@ -32,7 +32,7 @@ void write_header(std::ostream& out) {
   for (const char* what : {"position", "position_commanded"}) {
     for (std::size_t i = 0; i < kMaxJoints; ++i) out << ',' << what << '_' << i;
   }
-  out << '\n';
+  out << ",slip_joint,slip_moved,slip_bound,brakes_unwatched\n";
 }
 
 void write_record(std::ostream& out, const CycleRecord& r) {
@@ -54,7 +54,8 @@ void write_record(std::ostream& out, const CycleRecord& r) {
   write(r.wrench_raw);
   write(r.position);
   write(r.position_commanded);
-  out << '\n';
+  out << ',' << r.slip.joint << ',' << r.slip.moved << ',' << r.slip.bound << ','
+      << r.brakes_unwatched << '\n';
 }
 
 }  // namespace

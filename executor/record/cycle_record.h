@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "executor/states/brake_slip.h"
 #include "executor/states/state_machine.h"
 #include "shared/math/pose.h"
 #include "shared/motion/guarded_move.h"
@@ -45,9 +46,8 @@ struct CycleRecord {
   ArmState arm_state = ArmState::kUnconfigured;
   ArmRequest request = ArmRequest::kDisabled;
   std::uint8_t end_reason = 0;
-  std::int32_t end_index = -1;  ///< of the Ending, with value and bound
-  double end_value = 0.0;
-  double end_bound = 0.0;
+  BrakeSlip slip;                      ///< of the Ending, as the next
+  std::uint32_t brakes_unwatched = 0;  ///< bit i: of joint i
 
   // What the guarded move got and gave; valid while a move runs (moving).
   bool moving = false;

@@ -151,10 +151,25 @@ std::string following_error(const Ending& e, const Joint& joint) {
       static_cast<int>(joint.node), joint.name.c_str(), e.value, joint_unit(joint), e.bound);
 }
 
-std::string brake_failed(const Ending& e, const Joint& joint) {
-  return "joint " + joint.name +
-         format(" moved by %.3g %s with the drives off, at most %.3g: its brake does not hold",
-                e.value, joint_unit(joint), e.bound);
+// What was seen of the brakes once the run had ended for another reason.
+std::string after_the_end(const Ending& e, const Cell& cell) {
+  std::string text;
+  if (e.slip.joint >= 0 && e.reason != EndReason::kBrakeFailed) {
+    text = "; then " + describe(e.slip, cell);
+  }
+  const std::size_t joints = cell.robot.joints.size();
+  if (joints > 0 && e.brakes_unwatched == (1U << joints) - 1U) {
+    return text + "; for want of answers nobody could watch whether a brake holds";
+  }
+  std::string unwatched;
+  for (std::size_t i = 0; i < joints; ++i) {
+    if ((e.brakes_unwatched >> i & 1U) == 0) continue;
+    const Joint& joint = cell.robot.joints[i];
+    unwatched += (unwatched.empty() ? "" : ", ") +
+                 format("node %d (%s)", static_cast<int>(joint.node), joint.name.c_str());
+  }
+  if (unwatched.empty()) return text;
+  return text + "; for want of answers nobody could watch whether the brake holds at " + unwatched;
 }
 
 std::string arm_fault(const ArmFault& fault, const std::string& text) {
@@ -185,7 +200,9 @@ std::string of_the_sensor(const Ending& e) {
   return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);
 }
 
-std::string of_a_joint(const Ending& e, const Joint& joint, const Plan& plan) {
+std::string of_a_joint(const Ending& e, const Cell& cell, const Plan& plan) {
+  if (e.reason == EndReason::kBrakeFailed) return describe(e.slip, cell);
+  const Joint joint = joint_of(cell, e.index);
   if (e.reason == EndReason::kOtherBranch) {
     return "joint " + joint.name + off_start(joint_unit(joint), e, plan);
   }
@@ -193,33 +210,12 @@ std::string of_a_joint(const Ending& e, const Joint& joint, const Plan& plan) {
   if (e.reason == EndReason::kJointLimit) return joint_limit(e, joint);
   if (e.reason == EndReason::kJointSpeed) return joint_speed(e, joint);
   if (e.reason == EndReason::kFeedbackMissing) return feedback_missing(e, joint);
-  if (e.reason == EndReason::kBrakeFailed) return brake_failed(e, joint);
   if (e.reason == EndReason::kEncoderJump) return encoder_jump(e, joint);
   return following_error(e, joint);
 }
 
-}  // namespace
-
-std::string describe(const Transition& transition) {
-  const auto bit = static_cast<std::uint16_t>(transition.index < 0 ? 0 : 1U << transition.index);
-  switch (transition.deviation) {
-    case Deviation::kNone:
-      return "as planned";
-    case Deviation::kUnexpectedOutcome:
-      return "the plan has no way on from this outcome";
-    case Deviation::kTravelOutside:
-      return format("travelled along %s outside what validation saw", axis_name(transition.index));
-    case Deviation::kContactMissing:
-      return "contact " + tenon::to_string(ContactSignature{bit}) +
-             " is missing, validation always had it";
-    case Deviation::kContactUnforeseen:
-      return "contact " + tenon::to_string(ContactSignature{bit}) + " was never seen in validation";
-  }
-  return "?";
-}
-
-std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
-                     const std::string& arm_fault_text) {
+std::string why(const Ending& e, const Plan& plan, const Cell& cell,
+                const std::string& arm_fault_text) {
   switch (e.reason) {
     case EndReason::kNone:
       return "still running";
@@ -274,9 +270,41 @@ std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kBrakeFailed:
     case EndReason::kFollowingError:
     case EndReason::kEncoderJump:
-      return of_a_joint(e, joint_of(cell, e.index), plan);
+      return of_a_joint(e, cell, plan);
   }
   return "?";
+}
+
+}  // namespace
+
+std::string describe(const Transition& transition) {
+  const auto bit = static_cast<std::uint16_t>(transition.index < 0 ? 0 : 1U << transition.index);
+  switch (transition.deviation) {
+    case Deviation::kNone:
+      return "as planned";
+    case Deviation::kUnexpectedOutcome:
+      return "the plan has no way on from this outcome";
+    case Deviation::kTravelOutside:
+      return format("travelled along %s outside what validation saw", axis_name(transition.index));
+    case Deviation::kContactMissing:
+      return "contact " + tenon::to_string(ContactSignature{bit}) +
+             " is missing, validation always had it";
+    case Deviation::kContactUnforeseen:
+      return "contact " + tenon::to_string(ContactSignature{bit}) + " was never seen in validation";
+  }
+  return "?";
+}
+
+std::string describe(const BrakeSlip& slip, const Cell& cell) {
+  const Joint joint = joint_of(cell, slip.joint);
+  return "joint " + joint.name +
+         format(" moved by %.3g %s with the drives off, at most %.3g: its brake does not hold",
+                slip.moved, joint_unit(joint), slip.bound);
+}
+
+std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
+                     const std::string& arm_fault_text) {
+  return why(e, plan, cell, arm_fault_text) + after_the_end(e, cell);
 }
 
 }  // namespace tenon::executor

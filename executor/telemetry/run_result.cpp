@@ -77,6 +77,13 @@ Json json_of(const Finding& finding) {
   return json;
 }
 
+Json json_of(const BrakeSlip& slip, const Cell& cell) {
+  if (slip.joint < 0) return nullptr;
+  return {{"joint", cell.robot.joints[static_cast<std::size_t>(slip.joint)].name},
+          {"moved", slip.moved},
+          {"bound", slip.bound}};
+}
+
 Json json_of(const RecordReport& report) {
   return {{"name", report.name},
           {"file", report.file},
@@ -103,6 +110,8 @@ RunResult common_result(const ControlTask& task, const Plan& plan, const CycleRu
   result.arm_fault = ending.arm_fault.kind;
   result.message = describe(ending, plan, task.cell(), arm_fault_text);
   result.disable_confirmed = task.finished() && ending.disable_confirmed;
+  result.slip = ending.slip;
+  result.brakes_unwatched = ending.brakes_unwatched;
   result.statistics = runner.statistics();
   result.records_dropped = records_dropped;
   result.cycle_s = task.cycle_s();
@@ -118,14 +127,16 @@ void conclude(RunResult& result, const ControlTask& task, bool success) {
   if (task.finished() && !task.ending().disable_confirmed) {
     result.message += "; the arm did not confirm that it is disabled";
   }
-  result.exit_code = success && result.disable_confirmed ? 0 : 1;
+  const bool brakes_seen = result.slip.joint < 0 && result.brakes_unwatched == 0;
+  result.exit_code = success && result.disable_confirmed && brakes_seen ? 0 : 1;
 }
 
 }  // namespace
 
 bool RunResult::ended_badly() const {
   const bool orderly = reason == EndReason::kMeasured || reason == EndReason::kNothingMet;
-  return exit_code != 0 && reason != EndReason::kStopRequested && !(orderly && disable_confirmed);
+  const bool in_its_brakes = disable_confirmed && slip.joint < 0 && brakes_unwatched == 0;
+  return exit_code != 0 && reason != EndReason::kStopRequested && !(orderly && in_its_brakes);
 }
 
 int RunResult::exit_status() const {
@@ -189,6 +200,13 @@ std::string to_json(const RunResult& result, const Cell& cell) {
   if (result.reason == EndReason::kArmFault) {
     json["arm_fault"] = fault_row(result.reason, result.arm_fault)->arm_fault_name;
   }
+  json["brake_slip"] = json_of(result.slip, cell);
+  json["brakes_unwatched"] = Json::array();
+  for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
+    if ((result.brakes_unwatched >> i & 1U) != 0) {
+      json["brakes_unwatched"].push_back(cell.robot.joints[i].name);
+    }
+  }
   json["steps"] = Json::array();
   for (const StepReport& report : result.steps) json["steps"].push_back(json_of(report));
   if (result.finding) json["finding"] = json_of(*result.finding);
@@ -229,11 +247,7 @@ std::string waiting_line(const CycleRecord& record, const Plan& plan) {
 
 std::string hold_line(const CycleRecord& record, const Cell& cell) {
   if (record.state != State::kCatching || record.request != ArmRequest::kEnabled) return {};
-  const Ending ending{.reason = static_cast<EndReason>(record.end_reason),
-                      .index = record.end_index,
-                      .value = record.end_value,
-                      .bound = record.end_bound};
-  return describe(ending, Plan{}, cell) +
+  return describe(record.slip, cell) +
          "; it is held under power: support it, then stop this program (Ctrl-C)";
 }
 

@@ -21,7 +21,9 @@ struct RunResult {
   ArmFaultKind arm_fault = ArmFaultKind::kNone;  ///< where the reason is the arm's
   std::string message;                           ///< one line
   bool disable_confirmed = false;
-  std::string task;  ///< of a plan
+  BrakeSlip slip{};                    ///< whatever ended the run
+  std::uint32_t brakes_unwatched = 0;  ///< bit i: of joint i
+  std::string task;                    ///< of a plan
   std::string start;
   std::vector<StepReport> steps;
   std::optional<Finding> finding;  ///< of an identification that has all its readings

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "executor/telemetry/run_result.h"
 #include "tests/support/faulty_options.h"
@@ -85,6 +86,79 @@ TEST(Brakes, AFaultOfTheArmEndsTheHolding) {
   EXPECT_TRUE(held);
   EXPECT_TRUE(run.controller().finished());
   EXPECT_EQ(run.result().ending.reason, EndReason::kBrakeFailed);
+}
+
+// --- after another end ------------------------------------------------------------------------
+
+// A force of 80 N that nobody feels but the executor, and then the brake of an axis under gravity.
+WholeRun::Options force_and_then(const std::vector<std::string>& more) {
+  std::vector<std::string> faults = more;
+  faults.emplace_back("forged-force:at=free,time_s=0.3,force_N=80,duration_s=0.01");
+  WholeRun::Options options = with_faults(faults);
+  options.start = std::string("4");
+  return options;
+}
+
+TEST(Brakes, OneThatSlipsAfterAFaultIsSaidBesideTheFaultsName) {
+  const auto result = WholeRun(gantry_cell(), box_task(), box_plan("4"),
+                               force_and_then({"brake-failure:node=3,at=stopping"}))
+                          .run();
+  EXPECT_EQ(result.ending.reason, EndReason::kForceFault) << result.reason;
+  EXPECT_EQ(result.reason.rfind("external force ", 0), 0U) << result.reason;
+  EXPECT_NE(result.reason.find("; then joint z moved by"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("its brake does not hold"), std::string::npos) << result.reason;
+  EXPECT_EQ(result.reason.find("for want of answers"), std::string::npos) << result.reason;
+}
+
+TEST(Brakes, AfterAFaultPowerIsKeptWhereTheCellWantsIt) {
+  Cell cell = gantry_cell();
+  cell.hold_if_brake_fails = true;
+  FirstLine told(cell);
+  WholeRun run(cell, box_task(), box_plan("4"),
+               force_and_then({"brake-failure:node=3,at=stopping"}), &told);
+  ASSERT_TRUE(run.prepare());
+  const auto caught = [&] { return run.controller().state() == executor::State::kCatching; };
+  for (int i = 0; i < 30'000 && !caught() && run.cycle(); ++i) {
+  }
+  ASSERT_TRUE(caught());
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(run.cycle());
+  EXPECT_EQ(told.line.rfind("joint z moved by", 0), 0U) << told.line;
+  const double held = run.result().truth.drives[kVertical].position;
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(run.cycle());
+  ASSERT_TRUE(caught());
+  EXPECT_NEAR(run.result().truth.drives[kVertical].position, held, 1e-4) << "it is held";
+  run.controller().request_stop();
+  for (int i = 0; i < 2000 && run.cycle(); ++i) {
+  }
+  EXPECT_TRUE(run.controller().finished());
+  EXPECT_EQ(run.result().ending.reason, EndReason::kForceFault) << "the first cause stays";
+}
+
+// One drive that nobody hears hides no other.
+TEST(Brakes, WhereANodesAnswersAreLostTheOthersAreWatchedAndThatIsSaid) {
+  const auto result =
+      WholeRun(gantry_cell(), box_task(), box_plan("4"),
+               force_and_then({"brake-failure:node=3,at=stopping",
+                               "drop:node=1,id=answers,at=stopping,duration_s=100"}))
+          .run();
+  EXPECT_EQ(result.ending.reason, EndReason::kForceFault) << result.reason;
+  EXPECT_FALSE(result.ending.disable_confirmed);
+  EXPECT_NE(result.reason.find("; then joint z moved by"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("for want of answers nobody could watch whether the brake holds at "
+                               "node 1 (x)"),
+            std::string::npos)
+      << result.reason;
+}
+
+TEST(Brakes, OneThatNobodyCanWatchIsSaidSo) {
+  const auto result = WholeRun(gantry_cell(), box_task(), box_plan("4"),
+                               force_and_then({"brake-failure:node=3,at=stopping",
+                                               "drop:node=3,id=answers,at=stopping,duration_s=99"}))
+                          .run();
+  EXPECT_EQ(result.ending.reason, EndReason::kForceFault) << result.reason;
+  EXPECT_NE(result.reason.find("nobody could watch whether the brake holds at node 3 (z)"),
+            std::string::npos)
+      << result.reason;
 }
 
 // A fault of the sensor, and then the quick stop: by how much does an axis under gravity move from

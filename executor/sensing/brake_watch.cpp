@@ -1,0 +1,58 @@
+#include "executor/sensing/brake_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "executor/faults/fault_bounds.h"
+
+namespace tenon::executor {
+
+BrakeWatch::BrakeWatch(const Robot& robot, const Parameters& parameters)
+    : joint_count_(robot.joints.size()),
+      catching_up_(std::min(1.0, 1e-6 * robot.cycle_us / parameters.roll_out_s)) {
+  for (std::size_t i = 0; i < joint_count_; ++i) {
+    const bool turns = robot.joints[i].kind == Joint::Kind::kRevolute;
+    joints_[i].play = turns ? parameters.play_rad : parameters.play_m;
+  }
+}
+
+void BrakeWatch::update(const JointVector& measured, std::uint32_t fresh, std::uint32_t off) {
+  for (std::size_t i = 0; i < joint_count_; ++i) {
+    const bool answered = (fresh >> i & 1U) != 0;
+    joints_[i].silent_cycles = answered ? 0 : joints_[i].silent_cycles + 1;
+    if (answered) take(joints_[i], measured[i], (off >> i & 1U) != 0);
+  }
+}
+
+void BrakeWatch::take(JointWatch& joint, double position, bool off) const {
+  if (!joint.known) joint.trailing = position;
+  joint.trailing += catching_up_ * (position - joint.trailing);
+  if (off && !joint.off) {
+    joint.off_at = position;
+    joint.bound = joint.play + std::abs(position - joint.trailing);
+  }
+  joint.position = position;
+  joint.off = off;
+  joint.known = true;
+}
+
+std::optional<BrakeSlip> BrakeWatch::slip() const {
+  for (std::size_t i = 0; i < joint_count_; ++i) {
+    const JointWatch& joint = joints_[i];
+    const double moved = std::abs(joint.position - joint.off_at);
+    if (!joint.off || moved <= joint.bound) continue;
+    return BrakeSlip{static_cast<int>(i), moved, joint.bound};
+  }
+  return std::nullopt;
+}
+
+std::uint32_t BrakeWatch::unwatched() const {
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < joint_count_; ++i) {
+    const bool watched = joints_[i].off && joints_[i].silent_cycles <= kFeedbackMissesMax;
+    if (!watched) bits |= 1U << i;
+  }
+  return bits;
+}
+
+}  // namespace tenon::executor

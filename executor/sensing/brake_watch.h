@@ -1,0 +1,58 @@
+#pragma once
+// Whether brakes hold. Remembers where each joint stood as its drive went off, and how far it has
+// moved since; a joint that moved as the power went may roll out. Of a joint that does not answer
+// it knows nothing, and says so. Real-time, one thread, no allocation.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "executor/states/brake_slip.h"
+#include "shared/cell/robot.h"
+#include "shared/ports/arm.h"
+
+namespace tenon::executor {
+
+class BrakeWatch {
+ public:
+  struct Parameters {
+    double play_rad = 2e-3;  ///< that a joint may move with its brake closed
+    double play_m = 5e-4;
+    double roll_out_s = 0.1;  ///< as far as it came in this time before, it may roll out
+  };
+
+  /// Copies what it needs of the robot.
+  BrakeWatch(const Robot& robot, const Parameters& parameters);
+
+  /// Once a cycle, from the first one. @param measured m or rad
+  /// @param fresh bit i: joint i has answered in this cycle
+  /// @param off bit i: and its motor has no power
+  void update(const JointVector& measured, std::uint32_t fresh, std::uint32_t off);
+
+  /// The first joint whose drive is off and that has moved further than a brake lets it.
+  [[nodiscard]] std::optional<BrakeSlip> slip() const;
+  /// Bit i: whether joint i's brake holds is not known. Its drive never said that it is off, or it
+  /// does not answer any more.
+  [[nodiscard]] std::uint32_t unwatched() const;
+
+ private:
+  struct JointWatch {
+    double play = 0.0;      ///< m or rad
+    double position = 0.0;  ///< of its last answer
+    double trailing = 0.0;  ///< behind the position by roll_out_s
+    double off_at = 0.0;    ///< where it stood
+    double bound = 0.0;     ///< how far it may be from there
+    int silent_cycles = 0;
+    bool known = false;  ///< it has answered
+    bool off = false;    ///< by its last answer
+  };
+
+  void take(JointWatch& joint, double position, bool off) const;
+
+  std::size_t joint_count_;
+  double catching_up_;  ///< share of its distance that `trailing` makes up for in a cycle
+  std::array<JointWatch, kMaxJoints> joints_{};
+};
+
+}  // namespace tenon::executor
