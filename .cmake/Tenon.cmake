@@ -14,12 +14,12 @@
 # ---------------------------------------------------------------------------------------------
 # Who may use whom. One row per target: everything that it may link, and therefore include.
 # ---------------------------------------------------------------------------------------------
-set(TENON_LIBRARIES shared shared_canopen shared_system shared_drawing shared_eds shared_config lcmtypes
+set(TENON_LIBRARIES shared shared_canopen shared_system shared_drawing shared_eds shared_config lcmtypes lcmtypes_received
     planner planner_belief planner_search planner_judge planner_report planner_new_task
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
     hw_can hw_canopen hw_cia402 hw_sensors hw_arm hw_load hw_check
-    sim_physics sim_cell sim_evaluation sim_evaluation_chain)
+    sim_physics sim_cell sim_listener sim_evaluation sim_evaluation_chain)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
 set(TENON_MAY_USE_shared_canopen shared)
@@ -29,6 +29,7 @@ set(TENON_MAY_USE_shared_eds    shared)
 set(TENON_MAY_USE_shared_config shared shared_canopen shared_system yaml-cpp urdfdom::urdfdom_model
                                 console_bridge::console_bridge nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
+set(TENON_MAY_USE_lcmtypes_received lcmtypes)
 set(TENON_MAY_USE_planner       shared planner_belief planner_search planner_judge)
 set(TENON_MAY_USE_planner_belief shared shared_system)
 set(TENON_MAY_USE_planner_search shared planner_belief)
@@ -47,10 +48,10 @@ set(TENON_MAY_USE_executor_loop           shared shared_system executor_faults e
                                           executor_record executor_motion executor_sensing executor_dry_run)
 set(TENON_MAY_USE_executor_identification shared executor_states executor_record executor_motion
                                           executor_sensing executor_loop)
-# Message types and LCM are telemetry's alone.
+# Message types and LCM are telemetry's, and those who listen to it.
 set(TENON_MAY_USE_executor_telemetry      shared shared_system executor_states executor_record
                                           executor_motion executor_loop executor_identification
-                                          lcmtypes LCM::lcm Threads::Threads
+                                          lcmtypes lcmtypes_received LCM::lcm Threads::Threads
                                           nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_hw_can        shared shared_system)
 set(TENON_MAY_USE_hw_canopen    shared shared_canopen)
@@ -62,6 +63,7 @@ set(TENON_MAY_USE_hw_check      shared shared_eds hw_canopen hw_arm hw_load)
 set(TENON_MAY_USE_sim_physics    shared ODE::ODE)
 # The arm's links and joints are bodies of the same engine.
 set(TENON_MAY_USE_sim_cell       shared shared_canopen shared_eds sim_physics ODE::ODE nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_sim_listener   shared shared_system lcmtypes lcmtypes_received LCM::lcm)
 set(TENON_MAY_USE_sim_evaluation shared shared_system shared_drawing sim_cell
                                  nlohmann_json::nlohmann_json)
 # The evaluation runs executor and virtual arm in lockstep inside one process.
@@ -76,7 +78,7 @@ set(TENON_MAY_USE_tenon-inspect  planner planner_report sim_physics shared_confi
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
                                  executor_loop executor_telemetry hw_can hw_arm hw_load shared_config)
 set(TENON_MAY_USE_tenon-monitor  executor_telemetry shared_config LCM::lcm)
-set(TENON_MAY_USE_tenon-sim      sim_cell hw_can shared_eds shared_config)
+set(TENON_MAY_USE_tenon-sim      sim_cell sim_listener hw_can shared_eds shared_config)
 set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)
 set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 hw_check shared_eds shared_config)
 

@@ -3,11 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <vector>
 
-#include "executor/telemetry/lcm_url.h"
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
 #include "shared/config/load.h"
+#include "shared/system/lcm_url.h"
 
 namespace tenon::executor {
 namespace {

@@ -10,11 +10,11 @@
 #include <lcm/lcm-cpp.hpp>
 #include <string>
 
-#include "executor/telemetry/lcm_url.h"
 #include "executor/telemetry/run_view.h"
 #include "executor/telemetry/telemetry.h"
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
+#include "shared/system/lcm_url.h"
 
 namespace tenon::executor {
 namespace {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -35,6 +36,7 @@
 #include "sim/cell/virtual_arm/one_client.h"
 #include "sim/cell/virtual_arm/virtual_cell.h"
 #include "sim/cell/virtual_arm/world_draw.h"
+#include "sim/listener/step_listener.h"
 
 namespace {
 
@@ -56,6 +58,7 @@ struct CommandLine {
   std::vector<std::string> faults;
   std::vector<std::string> twins;
   std::string eds;
+  std::string lcm_url;
   std::string json;
   std::string ready_file;
   bool once = false;
@@ -73,7 +76,8 @@ struct Lateness {
   }
 };
 
-Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer* server) {
+Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer* server,
+             sim::StepListener* steps) {
   Lateness lateness;
   sim::OneClient one_client;
   std::int64_t due_ns = monotonic_now_ns();
@@ -83,6 +87,7 @@ Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer*
       lateness.count(now_ns - due_ns);
       due_ns += kTick_ns * ((now_ns - due_ns) / kTick_ns + 1);
     }
+    if (steps != nullptr) steps->listen();
     bus.advance(now_ns);
     cell.step(now_ns, bus);
     if (server != nullptr &&
@@ -137,6 +142,38 @@ std::pair<std::uint8_t, DeviceFile> read_twin(const std::string& text) {
   return {static_cast<std::uint8_t>(node), std::move(device)};
 }
 
+/// Null where no fault waits for a step of the plan.
+std::unique_ptr<sim::StepListener> listen_for_steps(const CommandLine& line,
+                                                    const std::vector<sim::Fault>& faults,
+                                                    sim::FaultPhases& phases) {
+  const bool wanted = std::any_of(faults.begin(), faults.end(), [](const sim::Fault& fault) {
+    return fault.at_step.has_value();
+  });
+  if (wanted && line.lcm_url.empty()) {
+    throw InputError(
+        "--fault at=step: the executor alone knows the plan's step; give --lcm-url, where its "
+        "telemetry goes");
+  }
+  if (!wanted && !line.lcm_url.empty()) {
+    throw InputError("--lcm-url " + line.lcm_url +
+                     ": is for a --fault with at=step:N, and there is none");
+  }
+  if (!wanted) return nullptr;
+  return std::make_unique<sim::StepListener>(
+      line.lcm_url, [&phases](int step) { phases.begin_step(step, monotonic_now_ns()); });
+}
+
+/// A fault that never struck proves nothing: that is said.
+void tell_who_waited_in_vain(const CommandLine& line, const std::vector<sim::Fault>& faults,
+                             const sim::FaultPhases& phases) {
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    if (sim::begin_ns(faults[i], 0, &phases)) continue;
+    const char* why = faults[i].at_step ? "that step never ran, or --lcm-url brought no word of it"
+                                        : "what it waits for never happened";
+    std::fprintf(stderr, "tenon-sim: --fault %s: never struck: %s\n", line.faults[i].c_str(), why);
+  }
+}
+
 int simulate(const CommandLine& line) {
   check_apart({{"--json", line.json}, {"--ready-file", line.ready_file}},
               {{"--cell", line.cell}, {"--task", line.task}, {"--experiment", line.experiment}});
@@ -164,6 +201,7 @@ int simulate(const CommandLine& line) {
   if (!line.json.empty()) check_writable(line.json);
   sim::FaultPhases phases;
   options.phases = &phases;
+  const std::unique_ptr<sim::StepListener> steps = listen_for_steps(line, options.faults, phases);
   sim::VirtualCell cell(cell_file, task, options);
 
   const std::unique_ptr<CanBus> bus = hw::open_bus(line.can, cell_file.robot.bitrate_bps);
@@ -176,7 +214,7 @@ int simulate(const CommandLine& line) {
   announce(line, *bus);
   sim::FaultyBus faulty_bus(*bus, options.faults, cell_file.robot.master_node, monotonic_now_ns(),
                             &phases);
-  const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr);
+  const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr, steps.get());
 
   sim::Truth truth = cell.truth();
   truth.wakes = lateness.wakes;
@@ -187,6 +225,7 @@ int simulate(const CommandLine& line) {
   std::printf("simulated %.1f s; woke late by more than 1 ms %llu of %llu times, worst %.2f ms\n",
               truth.time_s, static_cast<unsigned long long>(truth.wakes_late),
               static_cast<unsigned long long>(truth.wakes), truth.late_max_ms);
+  tell_who_waited_in_vain(line, options.faults, phases);
   FinalFiles files;
   files.write({"--json", line.json}, sim::truth_json(truth));
   if (truth.solver_messages == 0) return files.conclude("tenon-sim", 0);
@@ -229,6 +268,10 @@ int parse_and_simulate(int argc, char** argv) {
                  "--fault help lists them")
       ->allow_extra_args(false)
       ->each(answer_help);
+  app.add_option(
+      "--lcm-url", line.lcm_url,
+      "where the executor's telemetry comes from, which tells the plan's steps to faults "
+      "with at=step:N");
   app.add_option("--twin", line.twins,
                  "NODE=FILE: that joint's drive answers with the objects, limits and access types "
                  "of an EDS or DCF file; may be repeated")

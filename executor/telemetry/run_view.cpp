@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "executor/states/state_machine.h"
-#include "executor/telemetry/received.h"
 #include "executor/telemetry/telemetry.h"
+#include "lcmtypes/received/received.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"

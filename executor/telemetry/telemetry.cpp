@@ -4,11 +4,11 @@
 #include <lcm/lcm-cpp.hpp>
 #include <utility>
 
-#include "executor/telemetry/lcm_url.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"
 #include "shared/base/error.h"
+#include "shared/system/lcm_url.h"
 #include "shared/system/monotonic_clock.h"
 
 namespace tenon::executor {

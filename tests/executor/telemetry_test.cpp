@@ -9,13 +9,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "executor/telemetry/lcm_url.h"
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"
 #include "shared/base/error.h"
+#include "shared/system/lcm_url.h"
 #include "tests/executor/bench.h"
 
 namespace tenon::executor {

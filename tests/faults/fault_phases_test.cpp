@@ -71,6 +71,20 @@ TEST(FaultPhases, FaultsOfBusAndDevicesStrikeThere) {
   }
 }
 
+TEST(FaultPhases, AFaultStrikesInTheStepOfThePlanThatItWaitsFor) {
+  for (const char* name : {"gantry3", "csp6"}) {
+    const Cell cell = shipped_cell(name);
+    const auto [task, plan] = planned_box(cell, "1");
+    for (const int step : {0, 1, 4, 10}) {
+      const std::string spec = "emergency:node=1,code=0x3210,at=step:" + std::to_string(step);
+      WholeRun run(cell, task, plan, with_faults({spec}));
+      const auto result = run.run();
+      EXPECT_EQ(result.ending.reason, EndReason::kArmFault) << name << " " << spec;
+      EXPECT_EQ(result.steps, static_cast<std::size_t>(step)) << name << ": " << result.reason;
+    }
+  }
+}
+
 // Answers or setpoints of one drive alone.
 TEST(FaultPhases, OnlyADrivesAnswersOrOnlyItsSetpointsAreLost) {
   for (const char* name : {"gantry3", "csp6"}) {

@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
-#include "executor/telemetry/received.h"
 #include "executor/telemetry/run_view.h"
 #include "executor/telemetry/telemetry.h"
+#include "lcmtypes/received/received.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"

@@ -47,7 +47,10 @@ MAY_INCLUDE = {
     "executor_dry_run": {"shared", "executor_faults", "executor_states", "executor_motion"},
     "executor_loop": LOOP | {"shared_system"},
     "executor_identification": LOOP | {"executor_loop"},
-    "executor_telemetry": LOOP | {"shared_system", "executor_loop", "executor_identification", "lcmtypes"},
+    "executor_telemetry": LOOP | {"shared_system", "executor_loop", "executor_identification", "lcmtypes",
+                                  "lcmtypes_received"},
+    "sim_listener": {"shared", "shared_system", "lcmtypes", "lcmtypes_received"},
+    "lcmtypes_received": {"lcmtypes"},
     "hw_can": {"shared", "shared_system"},
     "hw_canopen": {"shared", "shared_canopen"},
     "hw_cia402": {"shared", "shared_canopen"},
@@ -62,7 +65,8 @@ MAY_INCLUDE = {
                                    "executor_identification", "executor_telemetry", "hw_can", "hw_arm", "hw_load"},
     "tenon-monitor": LOOP | {"shared_config", "shared_system", "executor_loop", "executor_identification",
                              "executor_telemetry"},
-    "tenon-sim": {"shared", "shared_canopen", "shared_eds", "shared_config", "shared_system", "sim_cell", "hw_can"},
+    "tenon-sim": {"shared", "shared_canopen", "shared_eds", "shared_config", "shared_system", "sim_cell", "sim_listener",
+                  "hw_can"},
     "tenon-evaluate": HW_ARM | {"shared_eds", "shared_config", "shared_system", "sim_evaluation_chain",
                                 "sim_evaluation", "sim_cell", "hw_arm", "hw_load"},
     "tenon-can": HW_ARM | {"shared_eds", "shared_config", "shared_system", "hw_can", "hw_arm", "hw_load",
@@ -73,7 +77,7 @@ MAY_INCLUDE = {
 def headers_by_room(tree):
     """The include paths of all headers of the house, by the target that shows them."""
     found = {}
-    for folder in FOLDERS:
+    for folder in (*FOLDERS, "lcmtypes"):
         for header in sorted((SOURCE / folder).rglob("*.h")):
             if header.name.startswith("main_"):
                 continue  # a main's own part

@@ -66,7 +66,7 @@ def make_skeleton(root):
         if relative.parts[0] in (*FOLDERS, "lcmtypes", "tests"):
             (root / relative).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, root / relative)
-    for folder in (*FOLDERS, "tests"):
+    for folder in (*FOLDERS, "lcmtypes", "tests"):
         for path in (SOURCE / folder).rglob("*.cpp"):
             dummy = root / path.relative_to(SOURCE)
             dummy.parent.mkdir(parents=True, exist_ok=True)

@@ -39,7 +39,10 @@ MAY_INCLUDE = {
     "sim": ("shared/", "sim/"),
     # One run of an evaluation: the executor over the master and the bus on the virtual cell.
     "sim/evaluation_chain": ("shared/", "sim/", "executor/", "hw/"),
+    # What an executor in another process tells.
+    "sim/listener": ("shared/", "sim/", "lcmtypes/"),
     "executor": ("shared/", "executor/", "lcmtypes/"),
+    "lcmtypes": ("lcmtypes/",),
     "tests": ("shared/", "planner/", "executor/", "hw/", "sim/", "lcmtypes/", "tests/"),
 }
 
@@ -48,7 +51,7 @@ RESERVED = [
     ("ODE", re.compile(r"^ode/"), lambda path, main: path.startswith(("sim/", "tests/")) and not main),
     ("LCM", re.compile(r"^(lcm|lcmtypes)/"),
      lambda path, main: path.startswith("tests/") or path == "executor/main_monitor.cpp"
-     or path.startswith("executor/telemetry/")),
+     or path.startswith(("executor/telemetry/", "sim/listener/", "lcmtypes/"))),
     ("yaml-cpp", re.compile(r"^yaml-cpp/"),
      lambda path, main: path.startswith(("shared/config/", "tests/"))),
     ("urdfdom", re.compile(r"^urdf"), lambda path, main: path.startswith("shared/config/")),

@@ -13,7 +13,7 @@ from build_tree import FOLDERS, BuildTree
 # (what, part of a header's path, targets that may use it)
 RULES = [
     ("ODE", "/usr/include/ode/", {"sim_physics", "sim_cell"}),
-    ("LCM", "/usr/include/lcm/", {"executor_telemetry", "tenon-monitor"}),
+    ("LCM", "/usr/include/lcm/", {"executor_telemetry", "tenon-monitor", "sim_listener"}),
     ("yaml-cpp", "/usr/include/yaml-cpp/", {"shared_config"}),
     ("CLI11", "/usr/include/CLI/", set()),
     ("nlohmann-json", "/usr/include/nlohmann/",

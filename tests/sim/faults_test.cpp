@@ -42,6 +42,9 @@ TEST(FaultSpec, AFaultMayWaitForAPhaseAndMeanSomeFramesAlone) {
   EXPECT_FALSE(parse_fault("drop:node=3").at.has_value());
   EXPECT_EQ(parse_fault("brake-failure:node=3,at=sliding").at, FaultPhase::kSliding);
   EXPECT_EQ(parse_fault("drop:at=stopping,time_s=0.1").at, FaultPhase::kStopping);
+  EXPECT_EQ(parse_fault("drop:at=step:4").at_step, 4);
+  EXPECT_FALSE(parse_fault("drop:at=step:4").at.has_value());
+  EXPECT_FALSE(parse_fault("drop:at=stopping").at_step.has_value());
   EXPECT_EQ(parse_fault("drop:node=3").frames, FrameKind::kAny);
   EXPECT_EQ(parse_fault("drop:id=rpdo").frames, FrameKind::kSetpoints);
   const Fault one = parse_fault("delay:delay_s=0.001,id=0x191");
@@ -77,7 +80,11 @@ TEST(FaultSpec, WhatIsWrongIsSaidInOneLineWithItsBound) {
       {"emergency:node=1", "code is missing"},
       {"emergency:node=1,code=70000", "code = '70000', must be a whole number in [1, 65535]"},
       {"torque-loss:node=1,share=1", "share"},
-      {"drop:at=home", "at = 'home', must be one of enabling, free, sliding, contact, stopping"},
+      {"drop:at=home",
+       "at = 'home', must be one of enabling, free, sliding, contact, stopping, step:N"},
+      {"drop:at=step:", "at = '', must be a whole number in [0, 253]"},
+      {"drop:at=step:-1", "at = '-1', must be a whole number in [0, 253]"},
+      {"drop:at=step:254", "at = '254', must be a whole number in [0, 253]"},
       {"drop:id=tpdo",
        "id = 'tpdo', must be one of any, sync, heartbeat, emcy, answers, rpdo, sdo"},
       {"drop:id=0x800", "must be a whole number in [0, 2047]"},
@@ -205,6 +212,19 @@ TEST(BusFaultsTest, OneThatWaitsForAPhaseBeginsSoLongAfterItAndLastsFromThen) {
   EXPECT_TRUE(bus.down(1100 * kMillisecond_ns));
   EXPECT_TRUE(bus.down(1299 * kMillisecond_ns));
   EXPECT_FALSE(bus.down(1300 * kMillisecond_ns));
+}
+
+TEST(BusFaultsTest, OneThatWaitsForAStepOfThePlanBeginsSoLongAfterItsFirstTime) {
+  FaultPhases phases;
+  const std::vector<Fault> faults = {parse_fault("interface-down:at=step:2,time_s=0.1")};
+  const BusFaults bus(faults, 127, 0, &phases);
+  phases.begin_step(0, 100 * kMillisecond_ns);
+  phases.begin_step(1, 200 * kMillisecond_ns);
+  EXPECT_FALSE(bus.down(900 * kMillisecond_ns));
+  phases.begin_step(2, 1000 * kMillisecond_ns);
+  phases.begin_step(2, 2000 * kMillisecond_ns);
+  EXPECT_FALSE(bus.down(1099 * kMillisecond_ns));
+  EXPECT_TRUE(bus.down(1100 * kMillisecond_ns));
 }
 
 TEST(FaultyBus, WithoutFaultsFramesPassBothWays) {

@@ -8,11 +8,15 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <fstream>
+#include <lcm/lcm-cpp.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "tests/support/child_process.h"
 #include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
@@ -113,6 +117,62 @@ TEST_F(TenonSimTest, CarriesOutFaultsOfDevicesAndBus) {
   close(connection);
   const auto truth = nlohmann::json::parse(std::ifstream(truth_file));
   EXPECT_NE(truth["events"].dump().find("fault node-reset, node 2"), std::string::npos);
+}
+
+// A log in place of the network. The step comes 0.3 s after the first message.
+TEST_F(TenonSimTest, AFaultWaitsForTheStepThatTheExecutorsTelemetryTells) {
+  const std::string log_file = folder.path() / "run.lcmlog";
+  {
+    lcm::LogFile log(log_file, "w");
+    for (int i = 0; i < 4; ++i) {
+      cycle_state_t cycle{};
+      cycle.step = static_cast<std::int16_t>(i - 1);
+      std::vector<char> bytes(static_cast<std::size_t>(cycle.getEncodedSize()));
+      cycle.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+      lcm::LogEvent event{};
+      event.eventnum = i;
+      event.timestamp = 1'000'000 + 100'000 * i;
+      event.channel = "TENON_CYCLE";
+      event.datalen = static_cast<int>(bytes.size());
+      event.data = bytes.data();
+      log.writeEvent(&event);
+    }
+  }
+  const std::string truth_file = folder.path() / "truth.json";
+  SimProcess sim(folder.path(), "2",
+                 {"--json", truth_file, "--lcm-url", "file://" + log_file, "--fault",
+                  "node-reset:node=2,at=step:2", "--fault", "node-reset:node=1,at=step:3"});
+  const int connection = connect_to(sim);
+  const std::string heard = ask(connection, "O\r", "t702100");
+  EXPECT_EQ(heard.find("t701100"), std::string::npos) << heard << ": no step 3 was told";
+  close(connection);
+  sim.process().send(SIGINT);
+  EXPECT_EQ(sim.process().wait(), 0);
+  const std::string said = sim.process().err();
+  EXPECT_NE(said.find("--fault node-reset:node=1,at=step:3: never struck: that step never ran"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("node=2"), std::string::npos) << said;
+  const auto truth = nlohmann::json::parse(std::ifstream(truth_file));
+  EXPECT_NE(truth["events"].dump().find("fault node-reset, node 2"), std::string::npos);
+  EXPECT_EQ(truth["events"].dump().find("fault node-reset, node 1"), std::string::npos);
+}
+
+TEST_F(TenonSimTest, AStepThatNobodyWouldTellIsRefused) {
+  const std::vector<std::string> cell = {
+      tests::executable("tenon-sim"), "--cell", tests::gantry_cell_file(),   "--task",
+      tests::box_task_file(),         "--can",  "slcan-listen://127.0.0.1:0"};
+  const std::pair<std::vector<std::string>, const char*> wrong[] = {
+      {{"--fault", "node-reset:node=2,at=step:2"}, "give --lcm-url"},
+      {{"--fault", "node-reset:node=2,at=free", "--lcm-url", "udpm://"}, "there is none"},
+  };
+  for (const auto& [more, said] : wrong) {
+    std::vector<std::string> command = cell;
+    command.insert(command.end(), more.begin(), more.end());
+    tests::ChildProcess child(folder.path(), command);
+    EXPECT_EQ(child.wait(), 2);
+    EXPECT_NE(child.err().find(said), std::string::npos) << child.err();
+  }
 }
 
 TEST_F(TenonSimTest, ATruthThatADiskDoesNotTakeIsNamedBehindWhatHappened) {

@@ -94,6 +94,7 @@ WholeRun::Result WholeRun::run_on_clock(sim::VirtualClock::Lateness late) {
       now_ns() + kRunMax_cycles * std::int64_t{1000} * cell_description_.robot.cycle_us;
   sim::VirtualClock clock(*time_, [&](std::int64_t due_ns) {
     if (due_ns > end_ns) stop = true;
+    note_step();
     return late(due_ns);
   });
   if (prepare()) runner_->run(stop, clock);
@@ -102,7 +103,16 @@ WholeRun::Result WholeRun::run_on_clock(sim::VirtualClock::Lateness late) {
 
 bool WholeRun::prepare() { return time_->prepare(); }
 
-bool WholeRun::cycle() { return time_->cycle(*runner_); }
+bool WholeRun::cycle() {
+  const bool more = time_->cycle(*runner_);
+  note_step();
+  return more;
+}
+
+void WholeRun::note_step() {
+  const std::int32_t step = controller_->record().step;
+  if (step >= 0) phases_.begin_step(step, now_ns());
+}
 
 WholeRun::Result WholeRun::run() {
   if (prepare()) {

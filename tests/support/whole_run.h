@@ -87,6 +87,9 @@ class WholeRun {
   [[nodiscard]] std::int64_t now_ns() const { return time_->now_ns(); }
 
  private:
+  /// Of the plan, for the faults that wait for it.
+  void note_step();
+
   Cell cell_description_;
   Plan plan_;
   std::unique_ptr<sim::VirtualLink> link_;

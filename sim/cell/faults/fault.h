@@ -126,6 +126,7 @@ struct Fault {
   double value = 0.0;        ///< see the kind
   std::uint64_t seed = 1;    ///< of the draws
   std::optional<FaultPhase> at = std::nullopt;  ///< unset: it waits for no phase
+  std::optional<int> at_step = std::nullopt;    ///< of the plan, from 0; unset: for no step
   FrameKind frames = FrameKind::kAny;           ///< of those that choose frames
   std::uint32_t cob_id = 0;                     ///< of FrameKind::kOne
 };

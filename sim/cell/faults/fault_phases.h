@@ -1,10 +1,12 @@
 #pragma once
-// When each phase of a run began, as the cell itself can tell: faults wait for them
-// (`--fault KIND:at=PHASE`). The cell notes them, devices and bus look. One thread.
+// When each phase of a run began, as the cell itself can tell, and each step of the plan, as its
+// executor tells: faults wait for them (`--fault KIND:at=PHASE`). Cell and executor note them,
+// devices and bus look. One thread.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 
 #include "sim/cell/faults/fault.h"
@@ -22,17 +24,28 @@ class FaultPhases {
     return began_ns_.at(static_cast<std::size_t>(phase));
   }
 
+  /// A step of the plan runs, from 0. The first time counts.
+  void begin_step(int step, std::int64_t now_ns) { steps_began_ns_.try_emplace(step, now_ns); }
+  [[nodiscard]] std::optional<std::int64_t> step_began_ns(int step) const {
+    const auto found = steps_began_ns_.find(step);
+    if (found == steps_began_ns_.end()) return std::nullopt;
+    return found->second;
+  }
+
  private:
   std::array<std::optional<std::int64_t>, kFaultPhases> began_ns_{};
+  std::map<int, std::int64_t> steps_began_ns_;
 };
 
 /// When a fault begins. @param on_ns time 0 of those that wait for no phase
-/// @return unset: its phase has not begun
+/// @return unset: its phase or step has not begun
 [[nodiscard]] inline std::optional<std::int64_t> begin_ns(const Fault& fault, std::int64_t on_ns,
                                                           const FaultPhases* phases) {
   const auto after_ns = static_cast<std::int64_t>(1e9 * fault.time_s);
-  if (!fault.at) return on_ns + after_ns;
-  const auto began = phases == nullptr ? std::nullopt : phases->began_ns(*fault.at);
+  if (!fault.at && !fault.at_step) return on_ns + after_ns;
+  if (phases == nullptr) return std::nullopt;
+  const auto began =
+      fault.at_step ? phases->step_began_ns(*fault.at_step) : phases->began_ns(*fault.at);
   if (!began) return std::nullopt;
   return *began + after_ns;
 }

@@ -8,6 +8,7 @@
 
 #include "shared/base/error.h"
 #include "shared/base/text.h"
+#include "shared/plan/plan.h"
 
 namespace tenon::sim {
 namespace {
@@ -168,7 +169,7 @@ class Parser {
     if (key == "node") {
       fault_.node = static_cast<std::uint8_t>(integer(key, value, kind.needs_node ? 1 : 0, 127));
     } else if (key == "at") {
-      fault_.at = static_cast<FaultPhase>(one_of(key, value, kPhaseNames));
+      take_at(key, value);
     } else if (key == "id" && chooses_frames(kind.kind)) {
       take_id(key, value);
     } else if (key == "time_s") {
@@ -189,14 +190,24 @@ class Parser {
     }
   }
 
-  /// The place of `value` among the names.
+  /// The place of `value` among the names. @param besides what a refusal says may stand there too
   [[nodiscard]] std::size_t one_of(const std::string& key, std::string_view value,
-                                   std::span<const std::string_view> names) const {
+                                   std::span<const std::string_view> names,
+                                   const char* besides = "") const {
     const auto found = std::find(names.begin(), names.end(), value);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
     std::string all;
     for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
-    refuse(text_, key + " = '" + std::string(value) + "', must be one of " + all);
+    refuse(text_, key + " = '" + std::string(value) + "', must be one of " + all + besides);
+  }
+
+  void take_at(const std::string& key, std::string_view value) {
+    if (!value.starts_with(kStepOf)) {
+      fault_.at = static_cast<FaultPhase>(one_of(key, value, kPhaseNames, ", step:N"));
+      return;
+    }
+    value.remove_prefix(kStepOf.size());
+    fault_.at_step = static_cast<int>(integer(key, value, 0, kSuccessorDone - 1));
   }
 
   void take_id(const std::string& key, std::string_view value) {
@@ -237,6 +248,7 @@ class Parser {
   }
 
   static constexpr double kTimeMax_s = 1e6;
+  static constexpr std::string_view kStepOf = "step:";
 
   const std::string& text_;
   Fault fault_;
@@ -254,7 +266,8 @@ std::string fault_help() {
       "  node          whose frames or which device, 1..127; the robot file's master_node for the\n"
       "                master; default 0: all\n"
       "  at            waits for what the cell does first: enabling, free, sliding, contact,\n"
-      "                stopping (sim/README.md says when each begins)\n"
+      "                stopping, step:N of the plan, from 0 (sim/README.md says when each "
+      "begins)\n"
       "  time_s        begin, in simulated seconds since switching on, or since that; default 0\n"
       "  duration_s    default 0: a single frame; where it is a state, to the end\n"
       "  probability   of each frame or sample while it lasts, (0, 1]; default 1\n"

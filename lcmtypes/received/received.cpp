@@ -1,6 +1,6 @@
-#include "executor/telemetry/received.h"
+#include "lcmtypes/received/received.h"
 
-namespace tenon::executor {
+namespace tenon {
 namespace {
 
 // As in lcmtypes/: what stands before the first length, the hash included.
@@ -40,4 +40,4 @@ bool lengths_fit<run_summary_t>(std::span<const std::uint8_t> bytes) {
          skip(bytes, kEndReason) && take_string(bytes);
 }
 
-}  // namespace tenon::executor
+}  // namespace tenon

@@ -1,4 +1,4 @@
-#include "executor/telemetry/lcm_url.h"
+#include "shared/system/lcm_url.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -15,7 +15,7 @@
 #include "shared/system/descriptor.h"
 #include "shared/system/regular_file.h"
 
-namespace tenon::executor {
+namespace tenon {
 namespace {
 
 constexpr const char* kDefaultGroup = "239.255.76.67";
@@ -132,4 +132,4 @@ bool has_multicast_route(const std::string& url) {
          ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&*group), sizeof(*group)) == 0;
 }
 
-}  // namespace tenon::executor
+}  // namespace tenon

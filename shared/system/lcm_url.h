@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace tenon::executor {
+namespace tenon {
 
 /// @throws InputError unless it is udpm:// or mpudpm:// with a multicast address and a port (either
 /// may be left out) and options that LCM has, file://PATH, or memq://
@@ -25,4 +25,4 @@ void check_lcm_log(const std::string& url);
 inline constexpr const char* kSetMulticastRoute =
     "set one with 'ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo'";
 
-}  // namespace tenon::executor
+}  // namespace tenon

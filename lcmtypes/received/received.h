@@ -9,9 +9,6 @@
 namespace tenon {
 class cycle_state_t;
 class run_summary_t;
-}  // namespace tenon
-
-namespace tenon::executor {
 
 inline constexpr std::size_t kMessageMax_bytes = 1U << 20U;
 
@@ -36,4 +33,4 @@ template <typename Message>
   return message;
 }
 
-}  // namespace tenon::executor
+}  // namespace tenon
