@@ -190,7 +190,7 @@ TEST(ManyRandomFaults, TenMinutesOfRunsBackToBackLeaveNothingBehind) {
 
 TEST(RandomFaults, AHundredAreRiddenOutOrNamed) { run_all_drawn("gantry3", 100); }
 
-TEST(RandomFaults, SixAxesRideThemOutOrNameThem) { run_all_drawn("csp6", 30); }
+TEST(RandomFaults, SixAxesRideThemOutOrNameThem) { run_all_drawn("csp6", 10); }
 
 TEST(ManyRandomFaults, TwoThousandAreRiddenOutOrNamed) { run_all_drawn("gantry3", 2000); }
 
