@@ -338,10 +338,24 @@ void Drive402::advance(std::int64_t now_ns) {
   resume_stop();
 }
 
-void Drive402::inject(const Fault& fault) {
+bool Drive402::can_have(const Fault& fault) const {
   const FaultTarget target = target_of(fault.kind);
-  if (target != FaultTarget::kNode && target != FaultTarget::kDrive) return;
-  if (!happens(fault)) return;
+  return target == FaultTarget::kNode || target == FaultTarget::kDrive;
+}
+
+VirtualDrive::Look Drive402::look() const {
+  return {.state = to_string(state_),
+          .switched_on = state_ == State::kSwitchedOn,
+          .enabled = state_ == State::kOperationEnabled,
+          .stopping = stopping(),
+          .faulted = state_ == State::kFault,
+          .brake_engaged = brake_engaged(),
+          .operational = node_.state() == NmtState::kOperational,
+          .error_code = error_code()};
+}
+
+void Drive402::inject(const Fault& fault) {
+  if (!can_have(fault) || !happens(fault)) return;
   if (fault.kind == FaultKind::kNodeReset) return node_.power_on(now_ns_);
   if (fault.kind == FaultKind::kEmergency) return this->fault(emergency_code(fault));
   if (fault.kind == FaultKind::kEncoderJump) {

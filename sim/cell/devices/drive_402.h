@@ -18,28 +18,14 @@
 #include "sim/cell/devices/drive_objects.h"
 #include "sim/cell/devices/drive_parameters.h"
 #include "sim/cell/devices/drive_state.h"
+#include "sim/cell/devices/virtual_drive.h"
 
 namespace tenon::sim {
 
-class Drive402 final : private NodeApplication {
+class Drive402 final : public VirtualDrive, private NodeApplication {
  public:
   using State = DriveState;
   using Parameters = DriveParameters;
-
-  /// What brake and servo are to do. Neither: the axis is free.
-  struct Demand {
-    bool brake = true;     ///< holds the axis, whatever the servo does
-    bool powered = false;  ///< the servo follows the demand with what torque it has
-    double position_counts = 0.0;
-    double velocity_countsps = 0.0;
-    double torque_max_permille = 0.0;  ///< of rated: 6072h, or less when a fault takes it
-  };
-
-  struct Measurement {
-    double position_counts = 0.0;
-    double velocity_countsps = 0.0;
-    double torque_permille = 0.0;  ///< of rated
-  };
 
   explicit Drive402(const Parameters& parameters);
 
@@ -51,20 +37,26 @@ class Drive402 final : private NodeApplication {
   [[nodiscard]] SlaveNode& node() { return node_; }
   [[nodiscard]] const SlaveNode& node() const { return node_; }
 
+  [[nodiscard]] std::uint8_t number() const override { return node_.node(); }
+  void power_on(std::int64_t now_ns) override { node_.power_on(now_ns); }
+  void receive(const CanFrame& frame, std::int64_t now_ns) override {
+    node_.receive(frame, now_ns);
+  }
+  void take(std::vector<CanFrame>& frames) override { node_.take(frames); }
   /// Timers of node and drive.
-  void advance(std::int64_t now_ns);
+  void advance(std::int64_t now_ns) override;
 
-  /// The demand at the end of the next `step_ns`, in which the plant then moves.
-  [[nodiscard]] Demand demand(std::int64_t step_ns);
-  /// The plant after that step.
-  void measured(const Measurement& measurement, std::int64_t step_ns);
+  [[nodiscard]] Demand demand(std::int64_t step_ns) override;
+  void measured(const Measurement& measurement, std::int64_t step_ns) override;
   /// The voltage behind the power stage.
   void set_supply(double volts);
 
   /// Begins a fault now, that is at the time of the last advance(): node reset, silent node,
   /// emergency, encoder jump, brake failure, torque loss, frozen drive, and the ways in which a
   /// drive may be unkind. Whether it happens is drawn once. Others are not a drive's, and ignored.
-  void inject(const Fault& fault);
+  void inject(const Fault& fault) override;
+  [[nodiscard]] bool can_have(const Fault& fault) const override;
+  [[nodiscard]] Look look() const override;
 
   [[nodiscard]] State state() const { return state_; }
   /// The brake's output; it holds a little later.

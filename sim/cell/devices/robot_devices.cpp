@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
+#include "shared/base/error.h"
 #include "shared/canopen/robot_drives.h"
 #include "sim/cell/canopen/eds.h"
 #include "sim/cell/devices/drive_402.h"
@@ -36,6 +38,25 @@ DriveParameters drive_parameters_of(const Joint& joint) {
   parameters.effort_max_permille = static_cast<std::uint16_t>(
       std::clamp(kPermille * joint.effort_max / joint.rated_effort, 1.0, 65535.0));
   return parameters;
+}
+
+VirtualDrives virtual_drives(const Robot& robot, const std::map<std::uint8_t, DeviceFile>& twins) {
+  for (const auto& [node, file] : twins) {
+    const bool of_joint = std::any_of(robot.joints.begin(), robot.joints.end(),
+                                      [&](const Joint& joint) { return joint.node == node; });
+    if (!of_joint) {
+      throw InputError("twin " + file.name + ": node " + std::to_string(node) +
+                       " is no joint of robot " + robot.name);
+    }
+  }
+  VirtualDrives drives;
+  for (const Joint& joint : robot.joints) {
+    auto drive = std::make_unique<Drive402>(drive_parameters_of(joint));
+    const auto twin = twins.find(joint.node);
+    if (twin != twins.end()) drive->become_twin(twin->second);
+    drives.push_back(std::move(drive));
+  }
+  return drives;
 }
 
 std::vector<EdsFile> eds_files(const Robot& robot) {

@@ -1,11 +1,16 @@
 #pragma once
 // The devices that a robot file describes, and their data sheets.
 
+#include <cstdint>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "shared/cell/robot.h"
+#include "shared/eds/device_file.h"
 #include "sim/cell/devices/drive_parameters.h"
+#include "sim/cell/devices/virtual_drive.h"
 
 namespace tenon::sim {
 
@@ -13,6 +18,14 @@ namespace tenon::sim {
 inline constexpr double kPermille = 1000.0;
 
 [[nodiscard]] DriveParameters drive_parameters_of(const Joint& joint);
+
+/// One a joint.
+using VirtualDrives = std::vector<std::unique_ptr<VirtualDrive>>;
+
+/// The drives that the robot file names. @param twins by node: what that joint's drive answers like
+/// @throws InputError for a twin of no joint
+[[nodiscard]] VirtualDrives virtual_drives(const Robot& robot,
+                                           const std::map<std::uint8_t, DeviceFile>& twins);
 
 struct EdsFile {
   std::string name;  ///< "1-drive-x.eds", "4-sensor.eds"

@@ -13,9 +13,9 @@ constexpr std::int64_t kSettled_ns = 50'000'000;
 }  // namespace
 
 void CellWatch::power_on() {
-  for (const Drive402& drive : drives_) {
-    states_seen_.push_back(drive.state());
-    brakes_seen_.push_back(drive.brake_engaged());
+  for (const auto& drive : drives_) {
+    states_seen_.emplace_back(drive->look().state);
+    brakes_seen_.push_back(drive->look().brake_engaged);
   }
 }
 
@@ -24,13 +24,14 @@ void CellWatch::look_at_drives(std::int64_t time_ns) {
     const auto tell = [&](const char* what) {
       events_.add(time_ns, "drive " + robot_.joints[i].name + ": " + what);
     };
-    if (drives_[i].state() != states_seen_[i]) {
-      tell(to_string(drives_[i].state()));
-      if (drives_[i].state() == Drive402::State::kFault) ++faults_;
-      states_seen_[i] = drives_[i].state();
+    const VirtualDrive::Look look = drives_[i]->look();
+    if (look.state != states_seen_[i]) {
+      tell(look.state);
+      if (look.faulted) ++faults_;
+      states_seen_[i] = look.state;
     }
-    if (drives_[i].brake_engaged() != brakes_seen_[i]) {
-      brakes_seen_[i] = drives_[i].brake_engaged();
+    if (look.brake_engaged != brakes_seen_[i]) {
+      brakes_seen_[i] = look.brake_engaged;
       tell(brakes_seen_[i] ? "brake engaged" : "brake released");
     }
   }
@@ -38,15 +39,15 @@ void CellWatch::look_at_drives(std::int64_t time_ns) {
 
 void CellWatch::look_at_phases(std::int64_t now_ns) {
   const auto any = [this](const auto& is) {
-    return std::any_of(drives_.begin(), drives_.end(), is);
+    return std::any_of(drives_.begin(), drives_.end(),
+                       [&](const auto& drive) { return is(drive->look()); });
   };
-  if (any([](const Drive402& d) { return d.state() == Drive402::State::kSwitchedOn; })) {
+  if (any([](const VirtualDrive::Look& look) { return look.switched_on; })) {
     phases_.begin(FaultPhase::kEnabling, now_ns);
   }
-  const bool enabled =
-      !any([](const Drive402& d) { return d.state() != Drive402::State::kOperationEnabled; });
+  const bool enabled = !any([](const VirtualDrive::Look& look) { return !look.enabled; });
   were_enabled_ = were_enabled_ || enabled;
-  if (were_enabled_ && any([](const Drive402& d) { return d.stopping(); })) {
+  if (were_enabled_ && any([](const VirtualDrive::Look& look) { return look.stopping; })) {
     phases_.begin(FaultPhase::kStopping, now_ns);
   }
   const bool touching = arm_.contact_force_N() > 0.0;

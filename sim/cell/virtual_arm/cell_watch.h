@@ -4,14 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "shared/cell/robot.h"
-#include "sim/cell/devices/drive_402.h"
+#include "sim/cell/devices/robot_devices.h"
 #include "sim/cell/faults/fault_phases.h"
 #include "sim/cell/virtual_arm/arm_body.h"
 #include "sim/cell/virtual_arm/event_log.h"
@@ -22,7 +22,7 @@ class CellWatch {
  public:
   /// All must outlive it. @param drives one a joint
   /// @param phases are told as they begin
-  CellWatch(const Robot& robot, const std::deque<Drive402>& drives, const ArmBody& arm,
+  CellWatch(const Robot& robot, const VirtualDrives& drives, const ArmBody& arm,
             FaultPhases& phases)
       : robot_(robot), drives_(drives), arm_(arm), phases_(phases) {}
 
@@ -44,11 +44,11 @@ class CellWatch {
 
  private:
   const Robot& robot_;
-  const std::deque<Drive402>& drives_;
+  const VirtualDrives& drives_;
   const ArmBody& arm_;
   FaultPhases& phases_;
   EventLog events_;
-  std::vector<Drive402::State> states_seen_;
+  std::vector<std::string_view> states_seen_;
   std::vector<bool> brakes_seen_;
   std::set<std::pair<std::size_t, std::size_t>> contacts_seen_;
   double contact_force_N_max_ = 0.0;

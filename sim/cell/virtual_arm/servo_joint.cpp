@@ -12,7 +12,8 @@ constexpr double kBrakeSoftness = 1e-9;  // m/s per N, rad/s per Nm
 constexpr double kEndStopMargin = 0.005;
 // An integral part that is faster than this, in periods of the spring over 2 pi, would ring.
 constexpr double kIntegralPeriodsMin = 4.0;
-constexpr double kPlayDamping = 0.02;  // of the grease between the flanks, in D
+constexpr double kLeastImpedance = 1e-6;  // N s/m, Nm s/rad: a motor row needs some
+constexpr double kPlayDamping = 0.02;     // of the grease between the flanks, in D
 
 Vector3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
 
@@ -76,6 +77,7 @@ void ServoJoint::drive(const Demand& demand, double inertia, double step_s) {
   step_axis_ = axis();
   step_lever_m_ = anchor_m() - vector_of(dBodyGetPosition(link_));
   follows_ = demand.powered && !demand.brake;
+  if (follows_ && demand.impedance) return yield(demand, step_s);
   if (follows_) return follow(demand, inertia, step_s);
   effort_limit_ = demand.brake ? kBrakeStrength * effort_max_ : 0.0;
   followed_ = state_.encoder;
@@ -118,7 +120,22 @@ void ServoJoint::follow(const Demand& demand, double inertia, double step_s) {
     damping *= kPlayDamping;
   }
   const double impedance = step_s * spring + damping;
-  set(dParamVel, (pull + damping * velocity) / impedance);
+  set_motor((pull + damping * velocity) / impedance, impedance);
+}
+
+// Spring and damper act on what there is at the end of the step, as in follow().
+void ServoJoint::yield(const Demand& demand, double step_s) {
+  const VirtualDrive::Impedance& set = *demand.impedance;
+  effort_limit_ = std::min(demand.effort_max, effort_max_);
+  followed_ = state_.encoder;
+  integral_ = 0.0;
+  const double pull = set.stiffness * (demand.position - state_.position) + set.effort;
+  const double impedance = std::max(step_s * set.stiffness + set.damping, kLeastImpedance);
+  set_motor((pull + set.damping * demand.velocity) / impedance, impedance);
+}
+
+void ServoJoint::set_motor(double velocity, double impedance) {
+  set(dParamVel, velocity);
   set(dParamCFM, 1.0 / impedance);
   set(dParamFMax, effort_limit_);
 }

@@ -8,12 +8,16 @@
 // q_d follows the drive's demand with a first-order lag; K is the joint's stiffness; D is critical
 // for what the joint moves in the arm's present pose. q_m - q is the gear's play: nothing while the
 // gear drives, anything up to half the backlash either way while it does not. The brake is dry
-// friction that holds more than the servo can pull. Positions are absolute and do not wrap. Units
-// are the joint's: m and N, or rad and Nm.
+// friction that holds more than the servo can pull. Where the demand names an impedance, K and D
+// are that one's, F_0 stands in the place of I, and there is no lag. Positions are absolute and do
+// not wrap. Units are the joint's: m and N, or rad and Nm.
 
 #include <ode/ode.h>
 
+#include <optional>
+
 #include "shared/cell/robot.h"
+#include "sim/cell/devices/virtual_drive.h"
 #include "sim/physics/solver/ode_world.h"
 
 namespace tenon::sim {
@@ -33,6 +37,8 @@ class ServoJoint {
     double position = 0.0;
     double velocity = 0.0;
     double effort_max = 0.0;  ///< what torque the servo has, N or Nm
+    /// Of a servo whose master sets stiffness and damping; unset: the joint's own.
+    std::optional<VirtualDrive::Impedance> impedance = std::nullopt;
   };
 
   struct State {
@@ -62,10 +68,13 @@ class ServoJoint {
 
  private:
   void follow(const Demand& demand, double inertia, double step_s);
+  void yield(const Demand& demand, double step_s);
   [[nodiscard]] double raw_position() const;
   [[nodiscard]] double play_at(double servo_position) const;
   void set_stops();
   void set(int parameter, double value);
+  /// A motor row that pulls with impedance (velocity - actual).
+  void set_motor(double velocity, double impedance);
 
   dJointID joint_;
   dBodyID link_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <vector>
 
 #include "shared/base/error.h"
@@ -10,7 +9,6 @@
 #include "shared/task/find_start.h"
 #include "shared/task/inserted.h"
 #include "shared/task/pose_error.h"
-#include "sim/cell/devices/drive_402.h"
 #include "sim/cell/devices/force_torque_node.h"
 #include "sim/cell/devices/robot_devices.h"
 #include "sim/cell/faults/bus_faults.h"
@@ -88,22 +86,18 @@ class VirtualCell::Impl {
         faults_to_come_(pending_faults(cell.robot, options.faults)),
         phases_(options.phases != nullptr ? *options.phases : own_phases_),
         arm_(cell_, real_task(task, options.world), arm_parameters(cell, cell_, task, options)),
+        drives_(virtual_drives(cell.robot, options.twins)),
         sensor_(cell_.robot.sensor, options.seed, sensor_imperfections(options.world)),
         delay_(cell.robot.joints.size(), delay_steps(options)),
         cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us) {
-    for (const Joint& joint : cell.robot.joints) {
-      Drive402& drive = drives_.emplace_back(drive_parameters_of(joint));
-      const auto twin = options_.twins.find(joint.node);
-      if (twin != options_.twins.end()) drive.become_twin(twin->second);
-    }
-    check_twins();
+    check_faults();
     if (arm_.overlap_m() > kOverlapMax_m) {
       throw InputError(
           "task " + task.name + ": at start \"" + start_name_ + "\" the part stands " +
           std::to_string(arm_.overlap_m()) +
           " m deep in the displaced environment; choose another start, seed or offset");
     }
-    for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].measured(measure(i), 0);
+    for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i]->measured(measure(i), 0);
   }
 
   void step(std::int64_t now_ns, CanBus& bus);
@@ -112,7 +106,7 @@ class VirtualCell::Impl {
   [[nodiscard]] bool at_standstill() const;
 
  private:
-  void check_twins() const;
+  void check_faults() const;
   void power_on(std::int64_t now_ns);
   void advance_physics(std::int64_t now_ns);
   void physics_step();
@@ -120,7 +114,7 @@ class VirtualCell::Impl {
   void deliver(const CanFrame& frame, std::int64_t now_ns);
   void sample_sensor();
   void send(CanBus& bus, bool arbitrate);
-  [[nodiscard]] Drive402::Measurement measure(std::size_t i) const;
+  [[nodiscard]] VirtualDrive::Measurement measure(std::size_t i) const;
   /// Of physics, since the cell was switched on.
   [[nodiscard]] std::int64_t time_ns() const { return physics_ns_ - on_ns_; }
   [[nodiscard]] std::int64_t stopwatch_ns() const {
@@ -135,7 +129,7 @@ class VirtualCell::Impl {
   FaultPhases own_phases_;
   FaultPhases& phases_;
   ArmBody arm_;
-  std::deque<Drive402> drives_;
+  VirtualDrives drives_;
   ForceTorqueNode sensor_;
   DemandDelay delay_;
 
@@ -154,14 +148,14 @@ class VirtualCell::Impl {
   CellWatch watch_{cell_.robot, drives_, arm_, phases_};
 };
 
-void VirtualCell::Impl::check_twins() const {
-  for (const auto& [node, file] : options_.twins) {
-    const bool of_joint =
-        std::any_of(drives_.begin(), drives_.end(),
-                    [node = node](const Drive402& drive) { return drive.node().node() == node; });
-    if (!of_joint) {
-      throw InputError("twin " + file.name + ": node " + std::to_string(node) +
-                       " is no joint of robot " + cell_.robot.name);
+void VirtualCell::Impl::check_faults() const {
+  for (const Fault& fault : faults_to_come_) {
+    for (const auto& drive : drives_) {
+      if (drive->number() != fault.node || drive->can_have(fault)) continue;
+      if (target_of(fault.kind) == FaultTarget::kSensor) continue;
+      throw InputError(std::string("fault ") + to_string(fault.kind) + ": robot " +
+                       cell_.robot.name + " has no drive that can have it at node " +
+                       std::to_string(fault.node) + "; --fault help lists all");
     }
   }
 }
@@ -169,7 +163,7 @@ void VirtualCell::Impl::check_twins() const {
 void VirtualCell::Impl::power_on(std::int64_t now_ns) {
   on_ = true;
   on_ns_ = physics_ns_ = now_ns;
-  for (Drive402& drive : drives_) drive.node().power_on(now_ns);
+  for (const auto& drive : drives_) drive->power_on(now_ns);
   watch_.power_on();
   sensor_.node().power_on(now_ns);
 }
@@ -192,14 +186,14 @@ void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
     send(bus, is_sync(frame));
   }
   advance_physics(now_ns);
-  for (Drive402& drive : drives_) drive.advance(now_ns);
+  for (const auto& drive : drives_) drive->advance(now_ns);
   sensor_.advance(now_ns);
   send(bus, false);
   watch_.look_at_drives(time_ns());
 }
 
 void VirtualCell::Impl::deliver(const CanFrame& frame, std::int64_t now_ns) {
-  for (Drive402& drive : drives_) drive.node().receive(frame, now_ns);
+  for (const auto& drive : drives_) drive->receive(frame, now_ns);
   sensor_.node().receive(frame, now_ns);
 }
 
@@ -214,17 +208,19 @@ void VirtualCell::Impl::physics_step() {
   const std::int64_t step_ns = options_.physics_step_ns;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const Joint& joint = cell_.robot.joints[i];
-    const Drive402::Demand demand = drives_[i].demand(step_ns);
-    delay_.now()[i] = {demand.brake, demand.powered,
+    const VirtualDrive::Demand demand = drives_[i]->demand(step_ns);
+    delay_.now()[i] = {demand.brake,
+                       demand.powered,
                        (demand.position_counts - joint.zero_counts) / joint.counts_per_unit,
                        demand.velocity_countsps / joint.counts_per_unit,
-                       demand.torque_max_permille / kPermille * joint.rated_effort};
+                       demand.torque_max_permille / kPermille * joint.rated_effort,
+                       demand.impedance};
   }
   const std::int64_t before_ns = stopwatch_ns();
   arm_.step(delay_.delayed(), static_cast<double>(step_ns) / kNanosecondsPerSecond);
   physics_cost_ns_ += stopwatch_ns() - before_ns;
   physics_ns_ += step_ns;
-  for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].measured(measure(i), step_ns);
+  for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i]->measured(measure(i), step_ns);
   wrench_sum_ += arm_.wrench();
   ++wrench_count_;
   watch_.look_at_drives(time_ns());
@@ -243,7 +239,7 @@ void VirtualCell::Impl::inject_faults() {
     const Fault fault = faults_to_come_[left];
     faults_to_come_.erase(faults_to_come_.begin() + static_cast<std::ptrdiff_t>(left));
     for (std::size_t i = 0; i < drives_.size(); ++i) {
-      if (cell_.robot.joints[i].node == fault.node) drives_[i].inject(fault);
+      if (cell_.robot.joints[i].node == fault.node) drives_[i]->inject(fault);
     }
     if (cell_.robot.sensor.node == fault.node) sensor_.inject(fault);
     watch_.events().add(time_ns(), "fault " + std::string(to_string(fault.kind)) + ", node " +
@@ -251,7 +247,7 @@ void VirtualCell::Impl::inject_faults() {
   }
 }
 
-Drive402::Measurement VirtualCell::Impl::measure(std::size_t i) const {
+VirtualDrive::Measurement VirtualCell::Impl::measure(std::size_t i) const {
   const Joint& joint = cell_.robot.joints[i];
   const ServoJoint::State& state = arm_.joint(i);
   return {state.encoder * joint.counts_per_unit + joint.zero_counts,
@@ -267,7 +263,7 @@ void VirtualCell::Impl::sample_sensor() {
 
 void VirtualCell::Impl::send(CanBus& bus, bool arbitrate) {
   outgoing_.clear();
-  for (Drive402& drive : drives_) drive.node().take(outgoing_);
+  for (const auto& drive : drives_) drive->take(outgoing_);
   sensor_.node().take(outgoing_);
   // Frames that become ready together leave by priority.
   if (arbitrate) {
@@ -302,10 +298,9 @@ Truth VirtualCell::Impl::truth() const {
   truth.contact_force_N_max = watch_.contact_force_N_max();
   truth.touching = arm_.scene().touching();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    const Drive402& drive = drives_[i];
-    truth.drives.push_back({cell_.robot.joints[i].name, cell_.robot.joints[i].node,
-                            to_string(drive.state()), drive.brake_engaged(),
-                            drive.node().state() == NmtState::kOperational, drive.error_code(),
+    const VirtualDrive::Look look = drives_[i]->look();
+    truth.drives.push_back({cell_.robot.joints[i].name, cell_.robot.joints[i].node, look.state,
+                            look.brake_engaged, look.operational, look.error_code,
                             arm_.joint(i).position});
   }
   truth.faults = watch_.faults();
