@@ -14,19 +14,20 @@
 # ---------------------------------------------------------------------------------------------
 # Who may use whom. One row per target: everything that it may link, and therefore include.
 # ---------------------------------------------------------------------------------------------
-set(TENON_LIBRARIES shared shared_canopen shared_system shared_drawing shared_eds shared_config lcmtypes lcmtypes_received
+set(TENON_LIBRARIES shared shared_canopen shared_mit shared_system shared_drawing shared_eds shared_config lcmtypes lcmtypes_received
     planner planner_belief planner_search planner_judge planner_report planner_new_task
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry
-    hw_can hw_canopen hw_cia402 hw_sensors hw_arm hw_load hw_check
+    hw_can hw_canopen hw_cia402 hw_sensors hw_arm hw_mit hw_robot_arm hw_load hw_check
     sim_physics sim_cell sim_listener sim_evaluation sim_evaluation_chain)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
 set(TENON_MAY_USE_shared_canopen shared)
+set(TENON_MAY_USE_shared_mit    shared)
 set(TENON_MAY_USE_shared_system shared Threads::Threads)
 set(TENON_MAY_USE_shared_drawing shared)
 set(TENON_MAY_USE_shared_eds    shared)
-set(TENON_MAY_USE_shared_config shared shared_canopen shared_system yaml-cpp urdfdom::urdfdom_model
+set(TENON_MAY_USE_shared_config shared shared_canopen shared_mit shared_system yaml-cpp urdfdom::urdfdom_model
                                 console_bridge::console_bridge nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
 set(TENON_MAY_USE_lcmtypes_received lcmtypes)
@@ -58,17 +59,19 @@ set(TENON_MAY_USE_hw_canopen    shared shared_canopen)
 set(TENON_MAY_USE_hw_cia402     shared shared_canopen)
 set(TENON_MAY_USE_hw_sensors    shared)
 set(TENON_MAY_USE_hw_arm        shared shared_canopen hw_canopen hw_cia402 hw_sensors)
-set(TENON_MAY_USE_hw_load       shared hw_arm)
-set(TENON_MAY_USE_hw_check      shared shared_eds hw_canopen hw_arm hw_load)
+set(TENON_MAY_USE_hw_mit        shared shared_mit hw_arm)
+set(TENON_MAY_USE_hw_robot_arm  shared shared_mit hw_arm hw_mit)
+set(TENON_MAY_USE_hw_load       shared shared_mit hw_arm hw_mit)
+set(TENON_MAY_USE_hw_check      shared shared_eds shared_mit hw_canopen hw_arm hw_mit hw_load)
 set(TENON_MAY_USE_sim_physics    shared ODE::ODE)
 # The arm's links and joints are bodies of the same engine.
-set(TENON_MAY_USE_sim_cell       shared shared_canopen shared_eds sim_physics ODE::ODE nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_sim_cell       shared shared_canopen shared_mit shared_eds sim_physics ODE::ODE nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_sim_listener   shared shared_system lcmtypes lcmtypes_received LCM::lcm)
 set(TENON_MAY_USE_sim_evaluation shared shared_system shared_drawing sim_cell
                                  nlohmann_json::nlohmann_json)
 # The evaluation runs executor and virtual arm in lockstep inside one process.
 set(TENON_MAY_USE_sim_evaluation_chain shared shared_system sim_evaluation sim_cell
-                                       executor_dry_run executor_loop executor_telemetry hw_arm)
+                                       executor_dry_run executor_loop executor_telemetry hw_robot_arm)
 
 # The mains compose. What is common to all of them:
 set(TENON_MAY_USE_any_main      shared shared_system Threads::Threads CLI11::CLI11
@@ -76,7 +79,7 @@ set(TENON_MAY_USE_any_main      shared shared_system Threads::Threads CLI11::CLI
 set(TENON_MAY_USE_tenon-plan     planner planner_report planner_new_task sim_physics shared_config)
 set(TENON_MAY_USE_tenon-inspect  planner planner_report sim_physics shared_config)
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
-                                 executor_loop executor_telemetry hw_can hw_arm hw_load shared_config)
+                                 executor_loop executor_telemetry hw_can hw_robot_arm hw_load shared_config)
 set(TENON_MAY_USE_tenon-monitor  executor_telemetry shared_config LCM::lcm)
 set(TENON_MAY_USE_tenon-sim      sim_cell sim_listener hw_can shared_eds shared_config)
 set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)

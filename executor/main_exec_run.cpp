@@ -7,13 +7,11 @@
 
 #include "executor/loop/realtime.h"
 #include "executor/main_exec_output.h"
-#include "hw/arm/canopen_arm.h"
-#include "hw/arm/describe_fault.h"
-#include "hw/arm/drive_settings.h"
-#include "hw/arm/frame_set.h"
+#include "hw/bus_load/bus_load.h"
 #include "hw/can/candump_log.h"
 #include "hw/can/open_bus.h"
 #include "hw/can/recording_bus.h"
+#include "hw/robot_arm/open_arm.h"
 #include "shared/base/error.h"
 #include "shared/system/monotonic_clock.h"
 
@@ -60,7 +58,7 @@ TelemetryOutputs outputs(const Options& options) {
   return opened;
 }
 
-std::vector<std::pair<std::string, std::uint64_t>> named(const hw::CanopenArm::Counters& c) {
+std::vector<std::pair<std::string, std::uint64_t>> named(const hw::ArmCounters& c) {
   return {{"joint_frames_missing", c.joint_frames_missing},
           {"wrenches_missing", c.wrenches_missing},
           {"wrench_halves_torn", c.wrench_halves_torn},
@@ -82,8 +80,7 @@ TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* st
       bus_(hw::open_bus(options.can, robot().bitrate_bps, hw::master_frames(robot()))),
       can_log_(options.can_log.empty() ? nullptr : std::make_unique<CanLog>(options.can_log)),
       logged_bus_(can_log_ ? std::make_unique<hw::RecordingBus>(*bus_, can_log_->ring()) : nullptr),
-      arm_(std::make_unique<hw::CanopenArm>(
-          robot(), logged_bus_ ? static_cast<CanBus&>(*logged_bus_) : *bus_)),
+      arm_(hw::open_arm(task.cell(), logged_bus_ ? static_cast<CanBus&>(*logged_bus_) : *bus_)),
       recorder_(std::make_unique<Recorder>()),
       runner_(*arm_, task, recorder_.get(), {}),
       telemetry_(outputs(options), robot().joints.size(), steps, *recorder_),
@@ -99,7 +96,7 @@ TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* st
 TaskRun::~TaskRun() = default;
 
 void TaskRun::run() {
-  for (const std::string& remark : hw::drive_remarks(robot())) {
+  for (const std::string& remark : hw::start_remarks(robot())) {
     std::fprintf(stderr, "tenon-exec: %s\n", remark.c_str());
   }
   recorder_->start();
@@ -124,18 +121,18 @@ void TaskRun::run_arm() {
   constexpr std::int64_t kPoll_ns = 1'000'000;
   std::int64_t now_ns = monotonic_now_ns();
   while (!stop_.load(std::memory_order_relaxed) && !arm_->prepare(now_ns)) {
-    if (arm_->state() == ArmState::kFault) throw InputError(hw::describe(arm_->fault(), robot()));
+    if (arm_->state() == ArmState::kFault) throw InputError(hw::fault_text(arm_->fault(), robot()));
     arm_->wait(kPoll_ns);
     now_ns = monotonic_now_ns();
   }
-  for (const hw::SettingNote& note : arm_->bring_up().notes()) {
-    std::fprintf(stderr, "tenon-exec: %s\n", hw::describe(note, robot()).c_str());
+  for (const std::string& note : arm_->notes()) {
+    std::fprintf(stderr, "tenon-exec: %s\n", note.c_str());
   }
   runner_.run(stop_);
 }
 
 std::string TaskRun::arm_fault_text() const {
-  return hw::describe(task_.ending().arm_fault, robot());
+  return hw::fault_text(task_.ending().arm_fault, robot());
 }
 
 // A record that the recorder's ring has lost is lost to both files that it feeds.

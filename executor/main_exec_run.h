@@ -21,7 +21,7 @@
 #include "shared/ports/can_bus.h"
 
 namespace tenon::hw {
-class CanopenArm;
+class DeviceArm;
 class RecordingBus;
 }  // namespace tenon::hw
 
@@ -67,7 +67,7 @@ class TaskRun {
   std::unique_ptr<CanBus> bus_;
   std::unique_ptr<CanLog> can_log_;
   std::unique_ptr<hw::RecordingBus> logged_bus_;
-  std::unique_ptr<hw::CanopenArm> arm_;
+  std::unique_ptr<hw::DeviceArm> arm_;
   std::unique_ptr<Recorder> recorder_;
   CycleRunner runner_;
   Telemetry telemetry_;

@@ -315,6 +315,8 @@ void ControlTask::follow_brakes(const ArmFeedback& feedback) {
 
 // After every end, and each for itself: one drive that is still on, or silent, hides no other's.
 ControlTask::Turn ControlTask::watch_brakes() {
+  // Without brakes there is nothing to watch: the arm falls, as its cell allows.
+  if (!cell_.robot.brakes) return Event::kHeld;
   const bool told = ending_.slip.joint >= 0;
   if (!told && time_in_state_s() < parameters_.brake_watch_s) {
     const auto slip = brake_watch_.slip();

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "hw/arm/cob_ids.h"
+#include "hw/arm/describe_fault.h"
 #include "hw/arm/node_settings.h"
 
 namespace tenon::hw {
@@ -23,12 +24,19 @@ std::vector<JointChannel> channels_of(const Robot& robot) {
 
 CanopenArm::CanopenArm(const Robot& robot, CanBus& bus)
     : bus_(bus),
-      bring_up_(checked(robot)),
+      robot_(checked(robot)),
+      bring_up_(robot_),
       joints_(channels_of(robot)),
       wrench_source_(robot.sensor, {kForceCobId, kTorqueCobId}),
       supervision_(robot, joints_, counters_),
       intake_(robot, joints_, wrench_source_, supervision_, counters_),
       output_(robot, bus, joints_, supervision_, counters_) {}
+
+std::vector<std::string> CanopenArm::notes() const {
+  std::vector<std::string> lines;
+  for (const SettingNote& note : bring_up_.notes()) lines.push_back(describe(note, robot_));
+  return lines;
+}
 
 bool CanopenArm::prepare(std::int64_t now_ns) {
   if (state() == ArmState::kFault) {

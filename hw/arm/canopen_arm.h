@@ -22,6 +22,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "hw/arm/arm_counters.h"
@@ -29,6 +30,7 @@
 #include "hw/arm/arm_output.h"
 #include "hw/arm/arm_supervision.h"
 #include "hw/arm/bring_up.h"
+#include "hw/arm/device_arm.h"
 #include "hw/arm/joint_channel.h"
 #include "hw/sensors/canopen_wrench_source.h"
 #include "shared/cell/robot.h"
@@ -37,7 +39,7 @@
 
 namespace tenon::hw {
 
-class CanopenArm : public Arm {
+class CanopenArm : public DeviceArm {
  public:
   using Counters = ArmCounters;
 
@@ -56,7 +58,8 @@ class CanopenArm : public Arm {
   [[nodiscard]] ArmState state() const noexcept override { return supervision_.state(); }
   [[nodiscard]] ArmFault fault() const noexcept override { return supervision_.fault(); }
 
-  [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+  [[nodiscard]] const Counters& counters() const noexcept override { return counters_; }
+  [[nodiscard]] std::vector<std::string> notes() const override;
   /// What the devices say they are; filled by prepare().
   [[nodiscard]] const BringUp& bring_up() const { return bring_up_; }
 
@@ -66,6 +69,7 @@ class CanopenArm : public Arm {
   void stop_if_due(bool setpoints_wait) noexcept;
 
   CanBus& bus_;
+  const Robot robot_;
   BringUp bring_up_;
   Counters counters_;
   std::vector<JointChannel> joints_;  ///< of a fixed size: the parts below look into it

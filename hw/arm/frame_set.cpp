@@ -1,6 +1,5 @@
 #include "hw/arm/frame_set.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "hw/arm/cob_ids.h"
@@ -78,13 +77,6 @@ std::vector<BusFrame> frame_set(const Robot& robot) {
   frames.heartbeat("the sensor", robot.sensor.node, CyclePart::kAnytime);
   frames.heartbeat("the master", robot.master_node, CyclePart::kCommand);
   return frames.take();
-}
-
-std::uint32_t master_frames(const Robot& robot) {
-  const std::vector<BusFrame> frames = frame_set(robot);
-  return static_cast<std::uint32_t>(
-      std::count_if(frames.begin(), frames.end(),
-                    [&](const BusFrame& frame) { return frame.node == robot.master_node; }));
 }
 
 }  // namespace tenon::hw

@@ -31,7 +31,4 @@ struct BusFrame {
 
 [[nodiscard]] std::vector<BusFrame> frame_set(const Robot& robot);
 
-/// The most that the master sends in one cycle: what its transmit queue must hold.
-[[nodiscard]] std::uint32_t master_frames(const Robot& robot);
-
 }  // namespace tenon::hw

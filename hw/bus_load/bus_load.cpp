@@ -1,16 +1,29 @@
 #include "hw/bus_load/bus_load.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "hw/arm/frame_set.h"
+#include "hw/mit/motor_frame_set.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
+#include "shared/mit/robot_motors.h"
 
 namespace tenon::hw {
 
+std::vector<BusFrame> arm_frames(const Robot& robot) {
+  return speaks_mit(robot) ? mit::motor_frame_set(robot) : frame_set(robot);
+}
+
+std::uint32_t master_frames(const Robot& robot) {
+  const std::vector<BusFrame> frames = arm_frames(robot);
+  return static_cast<std::uint32_t>(
+      std::count_if(frames.begin(), frames.end(),
+                    [&](const BusFrame& frame) { return frame.node == robot.master_node; }));
+}
+
 BusLoad bus_load(const Robot& robot) {
   BusLoad load;
-  for (const BusFrame& frame : frame_set(robot)) {
+  for (const BusFrame& frame : arm_frames(robot)) {
     if (!frame.every_cycle) continue;
     ++load.frames_per_cycle;
     load.nominal_bits += nominal_frame_bits(frame.data_bytes);

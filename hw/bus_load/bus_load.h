@@ -5,7 +5,9 @@
 // space included; the worst stuffing adds floor((34 + 8n - 1) / 4) (Davis et al. 2007, section 2).
 
 #include <cstdint>
+#include <vector>
 
+#include "hw/arm/frame_set.h"
 #include "shared/cell/robot.h"
 
 namespace tenon::hw {
@@ -29,8 +31,16 @@ struct BusLoad {
   return nominal_frame_bits(data_bytes) + (34 + 8 * data_bytes - 1) / 4;
 }
 
-/// SYNC, one 6-byte RPDO (or half an 8-byte one, packed) and one 8-byte TPDO a joint, two 8-byte
-/// force/torque frames. The controlwords of packed targets are sent on change and not counted.
+/// The frames of an arm, whatever its drives speak.
+[[nodiscard]] std::vector<BusFrame> arm_frames(const Robot& robot);
+
+/// The most that the master sends in one cycle: what its transmit queue must hold.
+[[nodiscard]] std::uint32_t master_frames(const Robot& robot);
+
+/// Of CiA 402 drives SYNC, one 6-byte RPDO (or half an 8-byte one, packed) and one 8-byte TPDO a
+/// joint, two 8-byte force/torque frames. The controlwords of packed targets are sent on change and
+/// not counted. Of motors in MIT mode SYNC, an 8-byte command and an 8-byte answer a joint, and the
+/// two of force/torque.
 [[nodiscard]] BusLoad bus_load(const Robot& robot);
 
 /// Throws InputError with the numbers where the worst case exceeds kWorstAllowed.

@@ -21,7 +21,7 @@ class Analysis {
   explicit Analysis(const Robot& robot)
       : robot_(robot),
         bit_us_(1e6 / static_cast<double>(robot.bitrate_bps)),
-        frames_(frame_set(robot)),
+        frames_(arm_frames(robot)),
         waits_us_(frames_.size(), 0.0) {}
 
   /// Waiting times depend on one another: they only grow from round to round, until none does.

@@ -28,6 +28,18 @@ SensorBias read_bias(const Value& value, const ForceTorqueSensor& sensor) {
   return bias;
 }
 
+/// A cell has to say that it bears the fall of an arm without brakes.
+void check_fall(const Map& map, const Robot& robot) {
+  const auto falls = map.find("falls_without_power");
+  const bool says = falls && falls->choice({"false", "true"}) == 1;
+  if (says && robot.brakes) falls->refuse("the brakes of robot " + robot.name + " hold it");
+  if (says || robot.brakes) return;
+  const std::string why = "robot " + robot.name +
+                          " has no brakes and falls without power; say falls_without_power: true "
+                          "where the cell bears that";
+  falls ? falls->refuse(why) : map.at("robot").refuse(why);
+}
+
 /// Of a robot that cannot be read there are none; load_cell() says why.
 void append_drive_files(const std::filesystem::path& robot_file,
                         std::vector<std::filesystem::path>& files) {
@@ -49,9 +61,10 @@ void append_drive_files(const std::filesystem::path& robot_file,
 Cell load_cell(const std::filesystem::path& file) {
   const Value document = Value::parse(file, config::read_file(file));
   config::expect_kind(file, document, config::FileKind::kCell);
-  const Map map(document, {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange",
-                           "sensor_in_flange", "payload", "contact_stiffness_Npm",
-                           "contact_stiffness_Nmpr", "sensor_bias", "faults", "on_brake_failure"});
+  const Map map(document,
+                {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange",
+                 "sensor_in_flange", "payload", "contact_stiffness_Npm", "contact_stiffness_Nmpr",
+                 "sensor_bias", "faults", "on_brake_failure", "falls_without_power"});
   Cell cell;
   cell.name = map.at("name").name();
   if (const auto up = map.find("up_in_base")) {
@@ -82,8 +95,10 @@ Cell load_cell(const std::filesystem::path& file) {
   cell.force_fault_N = faults.number("force_N", positive_to(cell.robot.sensor.force_range_N));
   cell.torque_fault_Nm = faults.number("torque_Nm", positive_to(cell.robot.sensor.torque_range_Nm));
   if (const auto reaction = map.find("on_brake_failure")) {
+    if (!cell.robot.brakes) reaction->refuse("robot " + cell.robot.name + " has no brakes");
     cell.hold_if_brake_fails = reaction->choice({"power_off", "hold"}) == 1;
   }
+  check_fall(map, cell.robot);
   return cell;
 }
 

@@ -15,6 +15,7 @@
 #include "shared/config/file_kind.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
+#include "shared/config/load_motor.h"
 #include "shared/config/urdf_chain.h"
 #include "shared/config/yaml_value.h"
 #include "shared/ports/arm.h"
@@ -110,8 +111,9 @@ void read_drive(const Value& value, std::set<std::int64_t>& nodes, Drives& drive
 }
 
 /// Every joint of the URDF once, in any order; the URDF's order is the chain's.
+/// @param drives null: they are motors in MIT mode
 void read_joints(const Value& value, const std::string& urdf, std::set<std::int64_t>& nodes,
-                 Drives& drives, std::vector<Joint>& joints) {
+                 Drives* drives, std::vector<Joint>& joints) {
   std::set<std::string> read;
   for (const Value& entry : value.list(1, kMaxJoints)) {
     // The other keys depend on the joint that it names.
@@ -121,7 +123,11 @@ void read_joints(const Value& value, const std::string& urdf, std::set<std::int6
                                     [&](const Joint& each) { return each.name == name->text(); });
     if (joint == joints.end()) name->refuse_value("a revolute or prismatic joint of " + urdf);
     if (!read.insert(joint->name).second) name->refuse_value("listed once");
-    read_drive(entry, nodes, drives, *joint);
+    if (drives != nullptr) {
+      read_drive(entry, nodes, *drives, *joint);
+    } else {
+      config::read_motor(entry, nodes, *joint);
+    }
   }
   for (const Joint& joint : joints) {
     if (!read.contains(joint.name)) value.refuse("lacks joint " + joint.name + " of " + urdf);
@@ -163,7 +169,7 @@ void read_bus(const Value& value, std::set<std::int64_t>& nodes, Robot& robot) {
       map.at("heartbeat_timeout_ms").integer(std::int64_t{robot.heartbeat_ms} + 1, 65'535));
   robot.master_node = read_node(map.at("master_node"), nodes);
   if (const auto targets = map.find("targets_per_frame")) {
-    robot.targets_per_frame = static_cast<int>(targets->integer(1, 2));
+    robot.targets_per_frame = static_cast<int>(targets->integer(1, robot.brakes ? 2 : 1));
   }
 }
 
@@ -174,7 +180,7 @@ double read_response_lag_s(const Value& value, const Robot& robot) {
   const double least_s = protocol_lag_s(1e-6 * robot.cycle_us);
   constexpr double kRounding = 1.0 - 1e-9;
   if (lag_s < least_s * kRounding) {
-    value.refuse_value(format("at least %g s, the two cycles that CANopen takes", least_s));
+    value.refuse_value(format("at least %g s, the two cycles that the protocol takes", least_s));
   }
   return lag_s;
 }
@@ -184,7 +190,7 @@ double read_response_lag_s(const Value& value, const Robot& robot) {
 Robot load_robot(const std::filesystem::path& file) {
   const Value document = Value::parse(file, config::read_file(file));
   config::expect_kind(file, document, config::FileKind::kRobot);
-  const Map map(document, {"name", "urdf", "bus", "arm", "joints", "sensor"});
+  const Map map(document, {"name", "urdf", "protocol", "bus", "arm", "joints", "sensor"});
   Robot robot;
   robot.name = map.at("name").name();
   const std::string urdf = map.at("urdf").text();
@@ -193,7 +199,10 @@ Robot load_robot(const std::filesystem::path& file) {
   robot.flange = chain.flange;
   std::set<std::int64_t> nodes;
   Drives drives(file);
-  read_joints(map.at("joints"), urdf, nodes, drives, robot.joints);
+  const auto protocol = map.find("protocol");
+  const bool mit = protocol && protocol->choice({"canopen", "mit"}) == 1;
+  robot.brakes = !mit;
+  read_joints(map.at("joints"), urdf, nodes, mit ? nullptr : &drives, robot.joints);
   robot.sensor = read_sensor(map.at("sensor"), nodes);
   read_bus(map.at("bus"), nodes, robot);
 

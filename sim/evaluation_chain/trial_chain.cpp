@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "hw/arm/describe_fault.h"
 #include "shared/base/text.h"
 #include "shared/task/inserted.h"
 
@@ -27,11 +26,11 @@ TrialChain::TrialChain(const PreparedPlan& prepared, const Trial& trial,
     : cell_(prepared.cell),
       task_(prepared.task),
       link_({.bitrate_bps = cell_.robot.bitrate_bps, .seed = trial.seed}, cell_.robot.master_node),
-      arm_(cell_.robot, link_.master()),
+      arm_(hw::open_arm(cell_, link_.master())),
       controller_(cell_, prepared.dry_run, {}),
-      runner_(arm_, controller_, nullptr, loop),
+      runner_(*arm_, controller_, nullptr, loop),
       virtual_cell_(cell_, task_, world_of(prepared.candidate, prepared.joints, trial)),
-      time_(arm_, virtual_cell_, link_,
+      time_(*arm_, virtual_cell_, link_,
             {.cycle_ns = std::int64_t{1000} * cell_.robot.cycle_us,
              .feedback_deadline = loop.feedback_deadline}) {}
 
@@ -83,7 +82,8 @@ void TrialChain::print() const {
 }
 
 executor::RunResult TrialChain::told() const {
-  return executor::gather_result(controller_, runner_, 0, hw::describe(arm_.fault(), cell_.robot));
+  return executor::gather_result(controller_, runner_, 0,
+                                 hw::fault_text(arm_->fault(), cell_.robot));
 }
 
 }  // namespace tenon::sim

@@ -3,12 +3,13 @@
 // time. Made, used and gone on one thread; reads no clock.
 
 #include <cstdint>
+#include <memory>
 
 #include "executor/dry_run/dry_run.h"
 #include "executor/loop/controller.h"
 #include "executor/loop/cycle_runner.h"
 #include "executor/telemetry/run_result.h"
-#include "hw/arm/canopen_arm.h"
+#include "hw/robot_arm/open_arm.h"
 #include "shared/cell/cell.h"
 #include "shared/ports/arm.h"
 #include "shared/task/task.h"
@@ -50,7 +51,7 @@ class TrialChain {
   const Cell& cell_;
   const Task& task_;
   VirtualLink link_;
-  hw::CanopenArm arm_;
+  std::unique_ptr<hw::DeviceArm> arm_;
   executor::Controller controller_;
   executor::CycleRunner runner_;
   VirtualCell virtual_cell_;

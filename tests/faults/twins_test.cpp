@@ -124,9 +124,7 @@ TEST_P(TwinPlan, ADriveThatClampsItsWindowRunsOn) {
   ASSERT_TRUE(twin.run->prepare()) << twin.fault();
   ASSERT_GT(written, 0u);
   std::string told;
-  for (const hw::SettingNote& note : twin.run->arm().bring_up().notes()) {
-    if (note.node == node) told += hw::describe(note, twin.cell.robot) + "\n";
-  }
+  for (const std::string& note : twin.run->arm().notes()) told += note + "\n";
   EXPECT_NE(told.find("6065h:0 holds"), std::string::npos) << told;
   while (twin.run->cycle()) {
   }

@@ -22,10 +22,11 @@ HW_ARM = {"shared", "shared_canopen", "hw_canopen", "hw_cia402", "hw_sensors"}
 MAY_INCLUDE = {
     "shared": set(),
     "shared_canopen": {"shared"},
+    "shared_mit": {"shared"},
     "shared_system": {"shared"},
     "shared_drawing": {"shared"},
     "shared_eds": {"shared"},
-    "shared_config": {"shared", "shared_canopen", "shared_system"},
+    "shared_config": {"shared", "shared_canopen", "shared_mit", "shared_system"},
     "planner_belief": {"shared", "shared_system"},
     "planner_search": {"shared", "planner_belief"},
     "planner_judge": {"shared", "planner_belief"},

@@ -72,7 +72,7 @@ WholeRun::WholeRun(const Cell& cell, const Task& task, const Plan& plan, const O
   sim::Link* link = options.link != nullptr ? options.link : link_.get();
   const executor::CycleRunner::Parameters loop;
   master_ = std::make_unique<sim::LockstepBus>(link->master());
-  arm_ = std::make_unique<hw::CanopenArm>(robot, *master_);
+  arm_ = hw::open_arm(cell, *master_);
   controller_ = std::make_unique<executor::Controller>(
       cell, options.dry_run ? *options.dry_run : executor::dry_run(plan, cell), options.controller);
   if (options.tamper) port_ = std::make_unique<TamperedArm>(*arm_, options.tamper);
@@ -128,7 +128,7 @@ WholeRun::Result WholeRun::result() const {
   result.truth = virtual_cell_->truth();
   result.steps = controller_->runner().report_count();
   result.cycles = statistics().cycles;
-  const std::string fault = hw::describe(arm_->fault(), cell_description_.robot);
+  const std::string fault = hw::fault_text(arm_->fault(), cell_description_.robot);
   result.reason = executor::describe(result.ending, plan_, cell_description_, fault);
   return result;
 }

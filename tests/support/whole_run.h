@@ -15,6 +15,7 @@
 #include "executor/loop/controller.h"
 #include "executor/loop/cycle_runner.h"
 #include "hw/arm/canopen_arm.h"
+#include "hw/robot_arm/open_arm.h"
 #include "shared/cell/cell.h"
 #include "shared/plan/plan.h"
 #include "shared/task/task.h"
@@ -78,7 +79,7 @@ class WholeRun {
   /// Not where another link was given.
   [[nodiscard]] sim::VirtualBus& bus() { return link_->bus(); }
   [[nodiscard]] const sim::Lockstep::Statistics& statistics() const { return time_->statistics(); }
-  [[nodiscard]] hw::CanopenArm& arm() { return *arm_; }
+  [[nodiscard]] hw::DeviceArm& arm() { return *arm_; }
   [[nodiscard]] executor::Controller& controller() { return *controller_; }
   [[nodiscard]] executor::CycleRunner& runner() { return *runner_; }
   [[nodiscard]] sim::VirtualCell& cell() { return *virtual_cell_; }
@@ -96,7 +97,7 @@ class WholeRun {
   sim::FaultPhases phases_;
   std::unique_ptr<sim::BusFaults> bus_faults_;
   std::unique_ptr<sim::LockstepBus> master_;
-  std::unique_ptr<hw::CanopenArm> arm_;
+  std::unique_ptr<hw::DeviceArm> arm_;
   std::unique_ptr<Arm> port_;  ///< what the executor sees of it, where somebody tampers
   std::unique_ptr<executor::Controller> controller_;
   std::unique_ptr<executor::CycleRunner> runner_;

@@ -7,9 +7,11 @@
 
 #include "shared/base/error.h"
 #include "shared/canopen/robot_drives.h"
+#include "shared/mit/robot_motors.h"
 #include "sim/cell/canopen/eds.h"
 #include "sim/cell/devices/drive_402.h"
 #include "sim/cell/devices/force_torque_node.h"
+#include "sim/cell/devices/mit_drive.h"
 
 namespace tenon::sim {
 namespace {
@@ -50,6 +52,14 @@ VirtualDrives virtual_drives(const Robot& robot, const std::map<std::uint8_t, De
     }
   }
   VirtualDrives drives;
+  if (speaks_mit(robot)) {
+    if (!twins.empty()) {
+      throw InputError("twin " + twins.begin()->second.name + ": the motors of robot " +
+                       robot.name + " are no CANopen nodes, no EDS describes them");
+    }
+    for (const Joint& joint : robot.joints) drives.push_back(std::make_unique<MitDrive>(joint));
+    return drives;
+  }
   for (const Joint& joint : robot.joints) {
     auto drive = std::make_unique<Drive402>(drive_parameters_of(joint));
     const auto twin = twins.find(joint.node);
@@ -62,6 +72,7 @@ VirtualDrives virtual_drives(const Robot& robot, const std::map<std::uint8_t, De
 std::vector<EdsFile> eds_files(const Robot& robot) {
   std::vector<EdsFile> files;
   for (const Joint& joint : robot.joints) {
+    if (speaks_mit(robot)) break;  // no CANopen nodes
     files.push_back(eds_file(Drive402(drive_parameters_of(joint)).node(), "drive-" + joint.name));
   }
   if (robot.sensor.node != 0) {

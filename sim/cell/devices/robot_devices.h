@@ -32,7 +32,7 @@ struct EdsFile {
   std::string text;
 };
 
-/// One for every node of the robot, as its virtual device answers.
+/// One for every CANopen node of the robot, as its virtual device answers.
 [[nodiscard]] std::vector<EdsFile> eds_files(const Robot& robot);
 
 }  // namespace tenon::sim

@@ -1,13 +1,15 @@
 #pragma once
 // Which node sends a frame, and what it is, as a bus analyser would know it: by the predefined
 // identifiers of CiA 301 (7.3.5), corrected by what it has overheard of a master that gives process
-// data other identifiers (SDO downloads of 14xxh:1 and 18xxh:1). One thread.
+// data other identifiers (SDO downloads of 14xxh:1 and 18xxh:1), and of one that asks motors in MIT
+// mode for theirs (register 7). One thread.
 
 #include <cstdint>
 #include <map>
 #include <set>
 
 #include "shared/canopen/constants.h"
+#include "shared/mit/constants.h"
 #include "shared/ports/can_bus.h"
 #include "sim/cell/faults/fault.h"
 
@@ -57,6 +59,7 @@ class FrameSender {
 
   /// Takes note of a frame that has passed.
   void overhear(const CanFrame& frame) {
+    if (overhear_motor(frame)) return;
     const auto byte = [&frame](std::size_t i) { return std::uint32_t{frame.data[i]}; };
     const std::uint32_t index = byte(2) << 8 | byte(1);
     const bool download = (byte(0) & 0xE3u) == 0x23u;  // expedited, with its size
@@ -79,6 +82,22 @@ class FrameSender {
   }
 
  private:
+  /// Of a motor in MIT mode: that it is asked for the identifier of its answers, and what it says.
+  bool overhear_motor(const CanFrame& frame) {
+    const bool asked = frame.data[1] == 0 && frame.data[2] == mit::kReadRegister &&
+                       frame.data[3] == mit::kMasterId;
+    if (frame.extended || frame.length != 8 || !asked) return false;
+    const std::uint8_t number = frame.data[0];
+    if (frame.id == mit::kRegisterId) {
+      taken_[number].insert(number);
+    } else if (frame.id == (std::uint32_t{frame.data[5]} << 8U | frame.data[4])) {
+      given_[frame.id] = number;
+    } else {
+      return false;
+    }
+    return true;
+  }
+
   std::uint8_t master_node_;
   std::map<std::uint32_t, std::uint8_t> given_;            ///< who sends that identifier
   std::map<std::uint32_t, std::set<std::uint8_t>> taken_;  ///< who listens to it

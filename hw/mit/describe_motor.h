@@ -1,0 +1,21 @@
+#pragma once
+// Lines for people about motors in MIT mode. Not real-time (builds strings), pure.
+
+#include <string>
+
+#include "shared/cell/robot.h"
+#include "shared/ports/arm.h"
+
+namespace tenon::hw::mit {
+
+/// One line for a fault of an arm of such motors: which motor and joint, what was expected, what to
+/// check. Faults of bus and sensor read as those of hw/arm/describe_fault.h.
+[[nodiscard]] std::string describe_fault(const ArmFault& fault, const Robot& robot);
+
+/// "over-current", "off"; for a number that has no name "error".
+[[nodiscard]] const char* state_text(std::uint32_t state);
+
+/// What bring-up does to each motor, register by register. Several lines.
+[[nodiscard]] std::string describe_settings(const Robot& robot);
+
+}  // namespace tenon::hw::mit

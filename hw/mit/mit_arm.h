@@ -1,0 +1,103 @@
+#pragma once
+// An arm of motors in MIT mode and a CANopen force/torque node on one CAN bus, behind the arm port.
+//
+// prepare() brings up the sensor (hw/arm/bring_up.h), then the motors (motor_bring_up.h). After
+// that a cycle is
+//
+//   start_cycle   SYNC, which the sensor answers, and to each motor what command() decided last,
+//                 which it answers with its feedback
+//   receive       the feedback of every motor, the two halves of the wrench
+//   command       supervision, state machine, what the motors are sent as the next cycle begins,
+//                 the master's heartbeat
+//
+// So a setpoint waits for the next cycle as in hw/arm/canopen_arm.h, and position and wrench are of
+// one time. What stops leaves at once. A force beyond its limit makes all motors stand as its frame
+// is heard. A motor that is sent nothing for its TIMEOUT stops by itself, so that a hung program
+// looks dead; it has no brake, and what it carries falls.
+//
+// Real-time but for the constructor and prepare(). One thread. Owns everything but the bus, which
+// must outlive it.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hw/arm/arm_counters.h"
+#include "hw/arm/bring_up.h"
+#include "hw/arm/device_arm.h"
+#include "hw/mit/gravity.h"
+#include "hw/mit/mit_supervision.h"
+#include "hw/mit/motor_bring_up.h"
+#include "hw/mit/motor_channel.h"
+#include "hw/sensors/canopen_wrench_source.h"
+#include "hw/sensors/wrench_intake.h"
+#include "shared/cell/cell.h"
+#include "shared/ports/arm.h"
+#include "shared/ports/can_bus.h"
+
+namespace tenon::hw::mit {
+
+/// Throws InputError with one line where such motors and their sensor cannot share a bus: a number
+/// that feedback cannot carry, an identifier that something else uses, a heartbeat slower than half
+/// its timeout, a watchdog that a cycle or two of lost frames would set off.
+void check_robot(const Robot& robot);
+
+class MitArm : public DeviceArm {
+ public:
+  /// @param cell its masses are what is held against gravity  @throws InputError, see check_robot()
+  MitArm(const Cell& cell, CanBus& bus);
+
+  [[nodiscard]] std::size_t joint_count() const noexcept override { return motors_.size(); }
+  [[nodiscard]] bool prepare(std::int64_t now_ns) override;
+  void start_cycle(std::int64_t now_ns) noexcept override;
+  [[nodiscard]] bool receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept override;
+  void command(std::int64_t now_ns, ArmRequest request,
+               const JointVector& position) noexcept override;
+  void limit_force(const ForceLimit& limit) noexcept override { limit_ = limit; }
+  bool attend(std::int64_t now_ns) noexcept override;
+  void wait(std::int64_t at_most_ns) noexcept override { bus_.wait(at_most_ns); }
+  [[nodiscard]] ArmState state() const noexcept override { return supervision_.state(); }
+  [[nodiscard]] ArmFault fault() const noexcept override { return supervision_.fault(); }
+
+  [[nodiscard]] const ArmCounters& counters() const noexcept override { return counters_; }
+  [[nodiscard]] std::vector<std::string> notes() const override;
+
+ private:
+  /// Bounds a cycle's work however much arrives.
+  static constexpr int kMostFrames = 256;
+
+  void bring_up(std::int64_t now_ns);
+  void begin(std::int64_t now_ns);
+  int drain(std::int64_t now_ns) noexcept;
+  void take(const CanFrame& frame, std::int64_t now_ns) noexcept;
+  [[nodiscard]] bool take_motor(const CanFrame& frame) noexcept;
+  [[nodiscard]] bool take_wrench(const CanFrame& frame) noexcept;
+  [[nodiscard]] bool others_own(const CanFrame& frame) const noexcept;
+  void forget_freshness() noexcept;
+  void decide(ArmRequest request, bool follow, const JointVector& position) noexcept;
+  void send(const CanFrame& frame) noexcept;
+  void send_to_motors() noexcept;
+  void send_heartbeat(std::int64_t now_ns) noexcept;
+
+  CanBus& bus_;
+  const Robot robot_;
+  const Gravity gravity_;
+  BringUp sensor_bring_up_;
+  MotorBringUp motor_bring_up_;
+  OtherMaster other_master_;
+  ArmCounters counters_;
+  std::vector<MotorChannel> motors_;  ///< of a fixed size: the supervision looks into it
+  CanopenWrenchSource wrench_source_;
+  WrenchIntake wrench_intake_;
+  MitSupervision supervision_;
+
+  ForceLimit limit_;
+  ArmFeedback feedback_;
+  ArmRequest granted_ = ArmRequest::kDisabled;  ///< in the last cycle
+  bool cycle_open_ = false;
+  bool wrench_late_ = false;  ///< one has come since the last cycle closed
+  std::int64_t next_heartbeat_ns_ = 0;
+};
+
+}  // namespace tenon::hw::mit
