@@ -1,5 +1,6 @@
 #include "sim/physics/solver/locked_contacts.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,16 +11,15 @@
 namespace tenon::sim {
 namespace {
 
-// Settled: no force changes by more.
-constexpr double kSettled_N = 1e-9;
-constexpr int kSweepsMax = 200;
+// Two or three do where few faces touch.
+constexpr int kIterationsMax = 60;
 
 Vector3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
 
 void LockedContacts::make_rows(const std::vector<dContactGeom>& points, const ContactLaw& law,
-                               const Vector3& give_mpspN, double step_s) {
+                               double step_s) {
   rows_.clear();
   positions_m_.clear();
   const std::vector<double> share = shares(points);
@@ -32,7 +32,7 @@ void LockedContacts::make_rows(const std::vector<dContactGeom>& points, const Co
                              static_cast<const dReal*>(first), static_cast<const dReal*>(second)}) {
       Row& row = rows_.emplace_back();
       row.way = vector_of(way);
-      row.moved = give_mpspN.cwiseProduct(row.way);
+      row.softness = kFrictionSoftness;
     }
     const ContactRow normal = contact_row(law, share[i], i, step_s);
     Row& row = rows_[rows_.size() - kRowsAPoint];
@@ -40,39 +40,97 @@ void LockedContacts::make_rows(const std::vector<dContactGeom>& points, const Co
     row.wanted_mps = normal.approach_mps(point.depth, step_s);
     row.most_N = std::numeric_limits<double>::infinity();
     positions_m_.push_back(vector_of(point.pos));
-    for (std::size_t j = rows_.size() - kRowsAPoint; j < rows_.size(); ++j) {
-      const double give = rows_[j].way.dot(rows_[j].moved);
-      // Friction along an axis that is held stops nothing: without this it would know no measure.
-      if (give == 0.0) rows_[j].softness = std::max(rows_[j].softness, kFrictionSoftness);
-      rows_[j].grip_Nspm = 1.0 / (give + rows_[j].softness);
-    }
   }
 }
 
-bool LockedContacts::sweep(std::size_t stride, Vector3& velocity_mps) {
-  for (int i = 0; i < kSweepsMax; ++i) {
-    double change_N = 0.0;
-    for (std::size_t j = 0; j < rows_.size(); j += stride) {
-      Row& row = rows_[j];
-      const double missing_mps =
-          row.wanted_mps - row.way.dot(velocity_mps) - row.softness * row.force_N;
-      const double force_N =
-          std::clamp(row.force_N + missing_mps * row.grip_Nspm, row.least_N, row.most_N);
-      const double more_N = force_N - row.force_N;
-      row.force_N = force_N;
-      velocity_mps += more_N * row.moved;
-      change_N = std::max(change_N, std::abs(more_N));
+LockedContacts::Pull LockedContacts::pull_at(const Vector3& velocity_mps, const Tool& tool,
+                                             std::size_t stride) {
+  Pull pull;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (tool.give_mpspN[axis] == 0.0) continue;
+    const double off_mps = velocity_mps[axis] - tool.velocity_mps[axis];
+    pull.slope_Nspm(axis, axis) = 1.0 / tool.give_mpspN[axis];
+    pull.force_N[axis] = off_mps / tool.give_mpspN[axis];
+  }
+  for (std::size_t i = 0; i < rows_.size(); i += stride) {
+    Row& row = rows_[i];
+    const double missing_mps = row.wanted_mps - row.way.dot(velocity_mps);
+    const double whole_N = missing_mps / row.softness;
+    row.force_N = std::clamp(whole_N, row.least_N, row.most_N);
+    row.bound = whole_N > row.most_N ? 1 : (whole_N < row.least_N ? -1 : 0);
+    pull.force_N -= row.force_N * row.way;
+    if (row.bound == 0) pull.slope_Nspm += row.way * row.way.transpose() / row.softness;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (tool.give_mpspN[axis] != 0.0) continue;
+    pull.force_N[axis] = 0.0;
+    pull.slope_Nspm.row(axis).setZero();
+    pull.slope_Nspm.col(axis).setZero();
+    pull.slope_Nspm(axis, axis) = 1.0;
+  }
+  return pull;
+}
+
+double LockedContacts::lowest_along(const Vector3& velocity_mps, const Vector3& way_mps,
+                                    const Tool& tool, double slope_W, std::size_t stride) {
+  // Between their bounds forces change, each along a part of the way.
+  bends_.clear();
+  double curvature_W = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (tool.give_mpspN[axis] == 0.0) continue;
+    curvature_W += way_mps[axis] * way_mps[axis] / tool.give_mpspN[axis];
+  }
+  for (std::size_t i = 0; i < rows_.size(); i += stride) {
+    const Row& row = rows_[i];
+    const double speed_mps = row.way.dot(way_mps);
+    if (speed_mps == 0.0) continue;
+    const double missing_mps = row.wanted_mps - row.way.dot(velocity_mps);
+    const double a = (missing_mps - row.most_N * row.softness) / speed_mps;
+    const double b = (missing_mps - row.least_N * row.softness) / speed_mps;
+    const double bend_W = speed_mps * speed_mps / row.softness;
+    if (std::max(a, b) <= 0.0) continue;
+    bends_.emplace_back(std::max(0.0, std::min(a, b)), bend_W);
+    if (std::isfinite(std::max(a, b))) bends_.emplace_back(std::max(a, b), -bend_W);
+  }
+  std::sort(bends_.begin(), bends_.end());
+  double at = 0.0;
+  for (const auto& [next, bend_W] : bends_) {
+    const double there_W = slope_W + curvature_W * (next - at);
+    if (there_W >= 0.0) break;
+    at = next;
+    slope_W = there_W;
+    curvature_W += bend_W;
+  }
+  return at - slope_W / curvature_W;
+}
+
+bool LockedContacts::settle(const Tool& tool, std::size_t stride, Vector3& velocity_mps) {
+  Pull pull = pull_at(velocity_mps, tool, stride);
+  for (int i = 0; i < kIterationsMax; ++i) {
+    was_bound_.clear();
+    for (const Row& row : rows_) was_bound_.push_back(row.bound);
+    const Vector3 way_mps = -pull.slope_Nspm.ldlt().solve(pull.force_N);
+    pull = pull_at(velocity_mps + way_mps, tool, stride);
+    const bool same = std::equal(rows_.begin(), rows_.end(), was_bound_.begin(),
+                                 [](const Row& row, int bound) { return row.bound == bound; });
+    if (same) {
+      velocity_mps += way_mps;
+      return true;
     }
-    if (change_N <= kSettled_N) return true;
+    const Vector3 before_mps = velocity_mps;
+    const double slope_W = pull_at(before_mps, tool, stride).force_N.dot(way_mps);
+    velocity_mps += lowest_along(before_mps, way_mps, tool, slope_W, stride) * way_mps;
+    pull = pull_at(velocity_mps, tool, stride);
   }
   return false;
 }
 
 bool LockedContacts::solve(const std::vector<dContactGeom>& points, const ContactLaw& law,
                            const Vector3& velocity_mps, const Vector3& give_mpspN, double step_s) {
-  make_rows(points, law, give_mpspN, step_s);
+  make_rows(points, law, step_s);
+  const Tool tool{velocity_mps, give_mpspN};
   Vector3 velocity = velocity_mps;
-  if (!sweep(kRowsAPoint, velocity)) return false;
+  if (!settle(tool, kRowsAPoint, velocity)) return false;
   for (std::size_t i = 0; i < rows_.size(); i += kRowsAPoint) {
     const double most_N = law.friction * rows_[i].force_N;
     for (std::size_t j = i + 1; j < i + kRowsAPoint; ++j) {
@@ -80,7 +138,7 @@ bool LockedContacts::solve(const std::vector<dContactGeom>& points, const Contac
       rows_[j].most_N = most_N;
     }
   }
-  return sweep(1, velocity);
+  return settle(tool, 1, velocity);
 }
 
 Vector6 LockedContacts::wrench_about(const Vector3& point_m) const {
