@@ -15,7 +15,7 @@ namespace tenon {
 /// Values of the uncertain physical parameters.
 struct PhysicalParameters {
   double friction = 0.3;
-  double contact_stiffness_Npm = 5e4;
+  double contact_stiffness_Npm = 5e4;  ///< of parts and arm in series
   double oversize_m = 0.0;  ///< by which every size of the held part exceeds what is drawn
   /// Of the arm, (n + 1/2) T + tau_arm: by which what the move sees of pose and wrench is old.
   double latency_s = 0.0;

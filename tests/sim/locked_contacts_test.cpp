@@ -28,6 +28,7 @@ Vector3 direction(Random& random) {
 
 struct Case {
   Compliance compliance;
+  ArmGive arm;
   ContactLaw law;
   std::vector<dContactGeom> points;
   GuardedMove::Setpoint before;  ///< of a step without contact, which gets the tool going
@@ -38,6 +39,7 @@ Case drawn(Random& random, std::uint8_t compliant_axes, const std::vector<Vector
   Case one;
   one.compliance.compliant_axes = compliant_axes;
   one.law = {between(random, 0.0, 0.8), between(random, 1e4, 1e6)};
+  if (random.uniform() < 0.5) one.arm.give_mpN = between(random, 0.0, 1e-4);
   for (const Vector3& normal : normals) {
     dContactGeom& point = one.points.emplace_back();
     for (int axis = 0; axis < 3; ++axis) {
@@ -55,9 +57,10 @@ Case drawn(Random& random, std::uint8_t compliant_axes, const std::vector<Vector
   return one;
 }
 
-/// The tool after a step, and the wrench on it.
+/// Tool and part after a step, and the wrench on them.
 struct End {
   Pose pose;
+  Pose part;
   Vector6 wrench = Vector6::Zero();
   bool settled = true;
 };
@@ -65,7 +68,7 @@ struct End {
 End by_ode(const Case& one) {
   OdeWorld world;
   CompliantTool tool(world, one.compliance);
-  tool.set_compliance(one.compliance, /*turns=*/false);
+  tool.set_compliance(one.compliance, /*turns=*/false, one.arm);
   tool.place({});
   tool.fly(one.before, kStep_s);
   tool.show();
@@ -79,21 +82,21 @@ End by_ode(const Case& one) {
   world.step(kStep_s);
   tool.follow();
   dGeomDestroy(on_body);
-  return {tool.pose(), joints.wrench(), true};
+  return {tool.pose(), tool.part_pose(), joints.wrench(), true};
 }
 
 End by_sweeps(const Case& one) {
   OdeWorld world;
   CompliantTool tool(world, one.compliance);
-  tool.set_compliance(one.compliance, /*turns=*/false);
+  tool.set_compliance(one.compliance, /*turns=*/false, one.arm);
   tool.place({});
   tool.fly(one.before, kStep_s);
   LockedContacts contacts;
   const bool settled = contacts.solve(one.points, one.law, tool.free_velocity_mps(one.now, kStep_s),
                                       tool.give_mpspN(kStep_s), kStep_s);
-  const Vector6 wrench = contacts.wrench_about(tool.pose().position_m);
+  const Vector6 wrench = contacts.wrench_about(tool.part_pose().position_m);
   tool.fly(one.now, kStep_s, wrench);
-  return {tool.pose(), wrench, settled};
+  return {tool.pose(), tool.part_pose(), wrench, settled};
 }
 
 /// @return forces of the drawn cases, N, but for the few that do not settle
@@ -112,6 +115,7 @@ std::vector<double> compared(std::uint64_t seed, int cases, std::uint8_t complia
     const Vector3 force_N = a.wrench.head<3>() - b.wrench.head<3>();
     EXPECT_LT(force_N.norm(), 1e-5 * scale_N) << i;
     EXPECT_LT((a.pose.position_m - b.pose.position_m).norm(), 1e-8) << i;
+    EXPECT_LT((a.part.position_m - b.part.position_m).norm(), 1e-8) << i;
     forces_N.push_back(a.wrench.head<3>().norm());
   }
   return forces_N;

@@ -12,11 +12,20 @@
 
 namespace tenon::sim {
 
-/// M (x'' - xs'') + D (x' - xs') + K (x - xs) = f for a body whose origin is the tool tip, in two
-/// ways that agree. Among contacts the spring and the damper are velocity constraints with the
-/// right softness, which dWorldStep integrates implicitly: stable for any stiffness and step. Where
-/// the force is known beforehand, in free flight above all, the same implicit step has a closed
-/// form, the Admittance, at a tenth of the time. Axes that do not yield follow the setpoint.
+/// What an arm gives way by, in series with the compliance that it is commanded: its links, its
+/// sensor and the fixture, as one spring with a damper between where its encoders see the tool and
+/// where the part is. Along the axes that yield; 0 is rigid.
+struct ArmGive {
+  double give_mpN = 0.0;
+  double relaxation_s = 2e-3;  ///< damping over stiffness
+};
+
+/// M (x'' - xs'') + D (x' - xs') + K (x - xs) = f for a tool that holds a part at its tip, and the
+/// part behind an arm that gives way; in two ways that agree. Among contacts, tool and arm are
+/// velocity constraints on the part's body with the right softness, which dWorldStep integrates
+/// implicitly: stable for any stiffness and step. Where the force is known beforehand, in free
+/// flight above all, the same implicit step has a closed form, the Admittance, at a tenth of the
+/// time. Axes that do not yield follow the setpoint.
 class CompliantTool {
  public:
   CompliantTool(OdeWorld& world, const Compliance& compliance);
@@ -27,22 +36,26 @@ class CompliantTool {
   /// What the coming moves are made with.
   /// @param turns whether anything can rotate the tool; else its orientation is held as it is, and
   /// the solver has no rotation to solve for
-  void set_compliance(const Compliance& compliance, bool turns = true);
-  /// At rest at a pose; the body too.
-  void place(const Pose& pose);
+  void set_compliance(const Compliance& compliance, bool turns = true, const ArmGive& arm = {});
+  /// At rest at a pose, and the part with it, as it stands under a force on it.
+  void place(const Pose& pose, const Vector3& force_N = Vector3::Zero());
+  /// Where the encoders see the tool.
   [[nodiscard]] const Pose& pose() const { return tool_.state().pose; }
+  /// Where the part is that it holds.
+  [[nodiscard]] Pose part_pose() const { return {pose().position_m + bent_m_, pose().orientation}; }
+  /// The part's.
   [[nodiscard]] dBodyID body() const { return body_; }
 
   /// One step under a known force (world axes, about the body's origin). The body stays behind
   /// until it is needed.
   void fly(const GuardedMove::Setpoint& setpoint, double step_s,
            const Vector6& wrench = Vector6::Zero());
-  /// The translational velocity that fly() would leave the tool with, and by how much a force along
+  /// The translational velocity that fly() would leave the part with, and by how much a force along
   /// each axis would change it (m/s a N; 0 for an axis that does not yield).
   [[nodiscard]] Vector3 free_velocity_mps(const GuardedMove::Setpoint& setpoint,
                                           double step_s) const;
   [[nodiscard]] Vector3 give_mpspN(double step_s) const;
-  /// Brings the body to where the tool is, for collisions.
+  /// Brings the body to where the part is, for collisions.
   void show();
   /// Sets the drive for the coming step of a shown body. Call before OdeWorld::step().
   void drive(const GuardedMove::Setpoint& setpoint, double step_s);
@@ -50,10 +63,24 @@ class CompliantTool {
   void follow();
 
  private:
+  /// Of the part under no force: m/s. @param tool as Admittance::update() leaves it
+  [[nodiscard]] Vector3 part_velocity_mps(const Admittance::State& tool, double step_s) const;
+  void bend(const Vector3& force_N, double step_s);
+
   Compliance compliance_;
+  ArmGive arm_;
   Admittance tool_;
+  Vector3 bent_m_ = Vector3::Zero();  ///< of the part, from where the tool is
   bool turns_ = true;
-  bool shown_ = false;  ///< the body is where the tool is
+  bool shown_ = false;  ///< the body is where the part is
+  /// What the body is driven with: of drive(), for follow().
+  struct Drive {
+    GuardedMove::Setpoint setpoint;
+    double step_s = 0.0;
+    Vector3 free_mps = Vector3::Zero();
+    Vector3 give_mpspN = Vector3::Zero();
+  };
+  Drive drive_;
   dBodyID body_;
   dJointID translation_;
   dJointID rotation_;

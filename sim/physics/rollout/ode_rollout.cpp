@@ -16,6 +16,8 @@ namespace {
 
 // A part this deep inside another has gone through it; the force limit alone presses far less.
 constexpr double kTunnelled_m = 5e-3;
+// Between parts: what gives way far more is the arm.
+constexpr double kPartStiffness_Npm = 1e6;
 constexpr std::int64_t kMicrosecond_ns = 1000;
 constexpr double kMicrosecond_s = 1e-6;
 
@@ -24,6 +26,23 @@ bool turns(const MoveParameters& move) {
   constexpr unsigned kRotations = 0b111000;
   return (move.compliance.compliant_axes & kRotations) != 0 ||
          !move.displacement.tail<3>().isZero(0.0);
+}
+
+/// Of two parts, where arm and parts in series are so stiff.
+double part_stiffness_Npm(double series_Npm) { return std::max(series_Npm, kPartStiffness_Npm); }
+
+/// What the arm has of that.
+ArmGive arm_give(double series_Npm) {
+  return {1.0 / series_Npm - 1.0 / part_stiffness_Npm(series_Npm)};
+}
+
+/// That holds a particle's tool where it is at rest.
+Vector3 resting_force_N(const Particle& particle, const MoveParameters& move) {
+  Vector3 force_N;
+  for (int axis = 0; axis < 3; ++axis) {
+    force_N[axis] = move.thresholds.force_keep_N * particle.signature.sign(axis);
+  }
+  return force_N;
 }
 
 /// Rounded up to whole steps of the task's, so that half of them see the same.
@@ -74,9 +93,10 @@ struct OdeRollout::Physics {
 
   void begin(const Particle& particle, const MoveParameters& move) {
     turning = turns(move);
-    law = {particle.physics.friction, particle.physics.contact_stiffness_Npm};
-    tool.set_compliance(move.compliance, turning);
-    tool.place(particle.pose);
+    const double series_Npm = particle.physics.contact_stiffness_Npm;
+    law = {particle.physics.friction, part_stiffness_Npm(series_Npm)};
+    tool.set_compliance(move.compliance, turning, arm_give(series_Npm));
+    tool.place(particle.pose, resting_force_N(particle, move));
     scene.place_environment(particle.environment);
     scene.set_oversize(particle.physics.oversize_m);
     scene.placed();
@@ -103,7 +123,7 @@ struct OdeRollout::Physics {
 
   /// Under the wrench as it stands.
   void fly(const GuardedMove::Setpoint& setpoint, double step_s) {
-    const Pose before = tool.pose();
+    const Pose before = tool.part_pose();
     tool.fly(setpoint, step_s, wrench);
     moved_from(before);
   }
@@ -114,13 +134,13 @@ struct OdeRollout::Physics {
                       tool.give_mpspN(step_s), step_s)) {
       return false;
     }
-    wrench = locked.wrench_about(tool.pose().position_m);
+    wrench = locked.wrench_about(tool.part_pose().position_m);
     fly(setpoint, step_s);
     return true;
   }
 
   void solve(const GuardedMove::Setpoint& setpoint, double step_s) {
-    const Pose before = tool.pose();
+    const Pose before = tool.part_pose();
     scene.make_joints(world, step_s, law);
     tool.drive(setpoint, step_s);
     world.step(step_s);
@@ -130,9 +150,10 @@ struct OdeRollout::Physics {
   }
 
   void moved_from(const Pose& before) {
-    double most_m = (tool.pose().position_m - before.position_m).norm();
+    const Pose now = tool.part_pose();
+    double most_m = (now.position_m - before.position_m).norm();
     if (turning) {
-      most_m += scene.reach_m() * before.orientation.angularDistance(tool.pose().orientation);
+      most_m += scene.reach_m() * before.orientation.angularDistance(now.orientation);
     }
     scene.moved(most_m);
   }
