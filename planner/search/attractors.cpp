@@ -10,6 +10,7 @@
 
 #include "planner/search/goal_attractors.h"
 #include "planner/search/guide_moves.h"
+#include "planner/search/touch_places.h"
 #include "shared/base/random.h"
 
 namespace tenon::planner {
@@ -236,27 +237,37 @@ class GuideSearch {
     return {};
   }
 
-  /// Against each side of each shape, from opposite its middle.
+  /// Against each side of each shape, with the middle of the part.
   void push_against_faces(Rollout& rollout, std::array<std::vector<ContactAttractor>, 6>& known) {
     const Eigen::AlignedBox3d part = around(task_.held);
+    const Vector3 start_m = seed_.mean.position_m + part.center();
     for (const Shape& shape : task_.environment) {
-      const Eigen::AlignedBox3d face = around({shape});
       for (const Primitive& push : primitives_) {
         if (stopped()) return;
         const int axis = axis_of(push);
-        Pose place = seed_.mean;
-        for (int other = 0; other < 3; ++other) {
-          if (!has(task_.coordinates, other)) continue;
-          place.position_m[other] = face.center()[other] - part.center()[other];
+        Vector3 size_m = part.sizes();
+        size_m[axis] = 0.0;
+        const double enough_m = 0.5 * size_m.norm() + seed_.spread.head<3>().maxCoeff();
+        for (const TouchPlace& side : touch_places(shape, axis, sign_of(push), enough_m, start_m)) {
+          const Belief belief = opposite(side, push, part, rollout);
+          if (!belief.particles.empty()) push_once(belief, {push}, known);
         }
-        const double off_m =
-            0.5 * (face.sizes()[axis] + part.sizes()[axis]) + seed_.spread[axis] + kOffFace_m;
-        place.position_m[axis] -= sign_of(push) * off_m;
-        if (out_of_reach(seed_.mean, place)) continue;
-        const Belief belief = spread_about(place, rollout);
-        if (!belief.particles.empty()) push_once(belief, {push}, known);
       }
     }
+  }
+
+  /// The start's spread before a place on a side; empty where the part would not fit there.
+  [[nodiscard]] Belief opposite(const TouchPlace& side, const Primitive& push,
+                                const Eigen::AlignedBox3d& part, Rollout& rollout) const {
+    const int axis = axis_of(push);
+    Pose place = seed_.mean;
+    for (int other = 0; other < 3; ++other) {
+      if (!has(task_.coordinates, other)) continue;
+      place.position_m[other] = side.at_m[other] - part.center()[other];
+    }
+    const double off_m = 0.5 * part.sizes()[axis] + seed_.spread[axis] + kOffFace_m;
+    place.position_m[axis] -= sign_of(push) * off_m;
+    return out_of_reach(seed_.mean, place) ? Belief{} : spread_about(place, rollout);
   }
 
   /// Adds the contacts that each of these pushes makes.

@@ -24,11 +24,11 @@ struct Attractors {
 /// about the goal. A push is a contact attractor where the particles then stand within c_u times
 /// their spread before it. Where these leave more than the goal's uncertainty, pushes from drawn
 /// places near the environment (`attractor_samples` of them) are added; before those, where the
-/// task has guide_moves, one against the middle of each side of each shape. Guides are the cheapest
-/// sequences of contacts that leave no more than the goal's uncertainty (or the most certain ones,
-/// where none does), faces before edges where the task has guide_moves; and the cheapest of them
-/// once more by way of the mouth: outside of the place where a tool drawn straight out of the goal
-/// along a contact loses it.
+/// task has guide_moves, one against each side of each shape (touch_places.h). Guides are the
+/// cheapest sequences of contacts that leave no more than the goal's uncertainty (or the most
+/// certain ones, where none does), faces before edges where the task has guide_moves; and the
+/// cheapest of them once more by way of the mouth: outside of the place where a tool drawn straight
+/// out of the goal along a contact loses it.
 /// @param succ with moves at approach speed and time for long ones
 /// @param rollout asked for collisions only
 /// @param stop asked before every push where not empty; true leaves it at what has been found

@@ -1,0 +1,91 @@
+// Where a shape is pushed against: on its sides, away from their rims, and never into a hole.
+
+#include "planner/search/touch_places.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "shared/geometry/extrusion.h"
+#include "shared/geometry/solid.h"
+
+namespace tenon::planner {
+namespace {
+
+using Profile = std::vector<Eigen::Vector2d>;
+
+// A U whose middle is open: 60 mm wide, its right leg 24 mm, the others 10 mm.
+const Profile kU = {{-0.030, -0.020}, {0.030, -0.020},  {0.030, 0.020},  {0.006, 0.020},
+                    {0.006, -0.010},  {-0.020, -0.010}, {-0.020, 0.020}, {-0.030, 0.020}};
+
+Shape drawn_out(const Profile& profile, double length_m, const Pose& pose) {
+  Shape shape;
+  shape.name = "u";
+  shape.kind = Shape::Kind::kSolid;
+  const auto solid = std::make_shared<const Solid>(tenon::extruded(profile, length_m));
+  shape.solid = solid;
+  shape.size_m = solid->size_m();
+  shape.pose = pose;
+  return shape;
+}
+
+double to_profile_m(const Profile& profile, const Eigen::Vector2d& p) {
+  double least_m = 1.0;
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    const Eigen::Vector2d a = profile[i];
+    const Eigen::Vector2d way = profile[(i + 1) % profile.size()] - a;
+    for (int k = 0; k <= 1000; ++k) least_m = std::min(least_m, (a + 1e-3 * k * way - p).norm());
+  }
+  return least_m;
+}
+
+TEST(TouchPlaces, ABoxIsPushedAgainstTheMiddleOfItsSide) {
+  const Shape box{"box", Shape::Kind::kBox, {0.02, 0.04, 0.06}, {{0.1, 0.2, 0.3}, {1, 0, 0, 0}}};
+  const auto places = touch_places(box, 2, -1, 0.01, Vector3::Zero());
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_TRUE(places[0].at_m.isApprox(Vector3(0.1, 0.2, 0.33)));
+  EXPECT_NEAR(places[0].area_m2, 8e-4, 1e-12);
+  EXPECT_NEAR(places[0].to_rim_m, 0.01, 1e-12);
+}
+
+TEST(TouchPlaces, TheTopOfAUIsTouchedWhereItIsBroadest) {
+  const Shape u = drawn_out(kU, 0.03, {{0.5, 0.0, 0.1}, {1, 0, 0, 0}});
+  const auto places = touch_places(u, 2, -1, 1.0, Vector3::Zero());
+  ASSERT_EQ(places.size(), 1U);
+  const Vector3 at_m = places[0].at_m;
+  EXPECT_NEAR(at_m.z(), 0.115, 1e-9);
+  EXPECT_NEAR(places[0].area_m2, 60e-3 * 10e-3 + 30e-3 * (24e-3 + 10e-3), 1e-9);
+  EXPECT_GT(at_m.x() - 0.5, 0.006);
+  const double rim_m = to_profile_m(kU, {at_m.x() - 0.5, at_m.y()});
+  EXPECT_NEAR(rim_m, places[0].to_rim_m, 1e-4);
+  EXPECT_GT(rim_m, 0.011);
+}
+
+TEST(TouchPlaces, WhereTheRimIsFarEnoughTheNearestPlaceIsTaken) {
+  const Shape u = drawn_out(kU, 0.03, {});
+  const auto places = touch_places(u, 2, -1, 0.004, {-0.025, 0.0, 0.0});
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_LT(places[0].at_m.x(), -0.02);
+  EXPECT_GE(to_profile_m(kU, places[0].at_m.head<2>()), 0.004 - 1e-6);
+}
+
+TEST(TouchPlaces, SidesThatFaceTheSameWayAreOnePlaceEachTheLargestFirst) {
+  const Shape u = drawn_out(kU, 0.03, {});
+  const auto places = touch_places(u, 0, +1, 1.0, Vector3::Zero());
+  ASSERT_EQ(places.size(), 2U);
+  EXPECT_NEAR(places[0].at_m.x(), -0.030, 1e-9);
+  EXPECT_NEAR(places[1].at_m.x(), 0.006, 1e-9);
+  EXPECT_GT(places[0].area_m2, places[1].area_m2);
+}
+
+TEST(TouchPlaces, ObliqueSidesFaceNoPush) {
+  const Shape u = drawn_out(kU, 0.03, {Vector3::Zero(), rotation_of({0.0, 0.0, 0.3})});
+  EXPECT_TRUE(touch_places(u, 0, +1, 1.0, Vector3::Zero()).empty());
+  EXPECT_EQ(touch_places(u, 2, -1, 1.0, Vector3::Zero()).size(), 1U);
+}
+
+}  // namespace
+}  // namespace tenon::planner
