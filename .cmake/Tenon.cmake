@@ -30,7 +30,7 @@ set(TENON_MAY_USE_shared_eds    shared)
 set(TENON_MAY_USE_shared_config shared shared_canopen shared_mit shared_system yaml-cpp urdfdom::urdfdom_model
                                 console_bridge::console_bridge nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
-set(TENON_MAY_USE_lcmtypes_received lcmtypes)
+set(TENON_MAY_USE_lcmtypes_received shared lcmtypes)
 set(TENON_MAY_USE_planner       shared planner_belief planner_search planner_judge)
 set(TENON_MAY_USE_planner_belief shared shared_system)
 set(TENON_MAY_USE_planner_search shared planner_belief)

@@ -51,7 +51,7 @@ MAY_INCLUDE = {
     "executor_telemetry": LOOP | {"shared_system", "executor_loop", "executor_identification", "lcmtypes",
                                   "lcmtypes_received"},
     "sim_listener": {"shared", "shared_system", "lcmtypes", "lcmtypes_received"},
-    "lcmtypes_received": {"lcmtypes"},
+    "lcmtypes_received": {"shared", "lcmtypes"},
     "hw_can": {"shared", "shared_system"},
     "hw_canopen": {"shared", "shared_canopen"},
     "hw_cia402": {"shared", "shared_canopen"},

@@ -42,7 +42,7 @@ MAY_INCLUDE = {
     # What an executor in another process tells.
     "sim/listener": ("shared/", "sim/", "lcmtypes/"),
     "executor": ("shared/", "executor/", "lcmtypes/"),
-    "lcmtypes": ("lcmtypes/",),
+    "lcmtypes": ("shared/", "lcmtypes/"),
     "tests": ("shared/", "planner/", "executor/", "hw/", "sim/", "lcmtypes/", "tests/"),
 }
 
