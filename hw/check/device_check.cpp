@@ -10,10 +10,12 @@
 #include "hw/arm/node_settings.h"
 #include "hw/arm/setting_runner.h"
 #include "hw/bus_load/bus_load.h"
+#include "hw/check/motor_check.h"
 #include "hw/check/object_names.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/canopen/robot_drives.h"
+#include "shared/mit/robot_motors.h"
 
 namespace tenon::hw {
 namespace {
@@ -314,6 +316,10 @@ std::vector<CheckLine> check_joint(const Robot& robot, std::size_t joint, const 
 }
 
 CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, DeviceFile>& files) {
+  if (speaks_mit(robot)) {
+    if (files.empty()) return motor_report(robot);
+    throw InputError("robot '" + robot.name + "': --eds: its motors are no CANopen nodes");
+  }
   check_robot(robot);
   CheckReport report;
   report.text = format("  %-7s  %-24s %-30s %-9s %s\n", "object", "what it is",

@@ -1,0 +1,30 @@
+#include "hw/check/motor_check.h"
+
+#include "hw/bus_load/bus_load.h"
+#include "hw/bus_load/response_times.h"
+#include "hw/mit/describe_motor.h"
+#include "hw/mit/mit_arm.h"
+#include "shared/base/error.h"
+#include "shared/base/text.h"
+
+namespace tenon::hw {
+
+CheckReport motor_report(const Robot& robot) {
+  mit::check_robot(robot);
+  CheckReport report;
+  report.text = mit::describe_settings(robot);
+  const BusLoad load = bus_load(robot);
+  report.text += format("bus: %u frames a cycle, %.1f %% nominal, %.1f %% in the worst case\n",
+                        load.frames_per_cycle, 100.0 * load.nominal, 100.0 * load.worst);
+  try {
+    check_bus_load(robot);
+    check_response_times(robot);
+    report.text += "verdict: bring-up asks for nothing else\n";
+  } catch (const InputError& error) {
+    report.good = false;
+    report.text += std::string("verdict: ") + error.what() + "\n";
+  }
+  return report;
+}
+
+}  // namespace tenon::hw
