@@ -87,6 +87,7 @@ class Patches {
       }
     }
     std::vector<Patch> largest;
+    largest.reserve(patches.size());
     for (auto& [first, patch] : patches) largest.push_back(std::move(patch));
     std::stable_sort(largest.begin(), largest.end(),
                      [](const Patch& a, const Patch& b) { return a.area_m2 > b.area_m2; });

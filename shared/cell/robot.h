@@ -67,7 +67,7 @@ struct Robot {
   std::uint8_t master_node = 127;
   /// Joints whose targets share a frame: 1, or 2 where single ones would overload the bus.
   int targets_per_frame = 1;
-  bool brakes = true;  ///< joints without power are held
+  bool brakes = true;                ///< joints without power are held
   double response_lag_s = 0.0;       ///< tau_arm: setpoint to motion, protocol_lag_s() included
   double stiffness_Npm = 1e6;        ///< of the arm at the tool, physical
   int measurement_delay_cycles = 1;  ///< n

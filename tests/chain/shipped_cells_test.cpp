@@ -54,7 +54,8 @@ TEST(ShippedPegCell, ReachesTheStartOfTheFinePegWhichTheTablesCellDoesNot) {
 
 std::string cell_name(const ::testing::TestParamInfo<const char*>& info) { return info.param; }
 
-INSTANTIATE_TEST_SUITE_P(Tree, ShippedCell, ::testing::Values("gantry3", "csp6", "mit6"), cell_name);
+INSTANTIATE_TEST_SUITE_P(Tree, ShippedCell, ::testing::Values("gantry3", "csp6", "mit6"),
+                         cell_name);
 INSTANTIATE_TEST_SUITE_P(Full, ShippedCell, ::testing::Values("lwa4p"), cell_name);
 
 }  // namespace

@@ -73,7 +73,8 @@ Eigen::Matrix3d rotation_of_kdl(const KDL::Frame& frame) {
 }
 
 class ShippedRobot : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(All, ShippedRobot, ::testing::Values("gantry3", "lwa4p", "csp6", "epos4", "mit6"),
+INSTANTIATE_TEST_SUITE_P(All, ShippedRobot,
+                         ::testing::Values("gantry3", "lwa4p", "csp6", "epos4", "mit6"),
                          [](const auto& robot) { return std::string(robot.param); });
 
 TEST_P(ShippedRobot, AgreesWithKdlOver100000Configurations) {

@@ -43,11 +43,12 @@ DriveParameters drive_parameters_of(const Joint& joint) {
 }
 
 VirtualDrives virtual_drives(const Robot& robot, const std::map<std::uint8_t, DeviceFile>& twins) {
-  for (const auto& [node, file] : twins) {
+  for (const auto& twin : twins) {
+    const std::uint8_t node = twin.first;
     const bool of_joint = std::any_of(robot.joints.begin(), robot.joints.end(),
                                       [&](const Joint& joint) { return joint.node == node; });
     if (!of_joint) {
-      throw InputError("twin " + file.name + ": node " + std::to_string(node) +
+      throw InputError("twin " + twin.second.name + ": node " + std::to_string(node) +
                        " is no joint of robot " + robot.name);
     }
   }
