@@ -285,8 +285,8 @@ TEST(LoadRobot, RefusesEachBadLineWithItsPlace) {
       {"force_range_N: 300", "force_range_N: 400",
        ":27: sensor.force_range_N = 400, must be in (0, 327.67]"},
       {"response_lag_s: 0.008", "response_lag_s: 0.0079",
-       ":4: arm.response_lag_s = 0.0079, must be at least 0.008 s, the two cycles that CANopen "
-       "takes"},
+       ":4: arm.response_lag_s = 0.0079, must be at least 0.008 s, the two cycles that the "
+       "protocol takes"},
       {"urdf: slide.urdf\n", "", ":1: the required key urdf is missing"},
   };
   expect_refusals(kSlideRobot, lines,
