@@ -10,7 +10,7 @@
 namespace tenon::executor {
 namespace {
 
-constexpr std::uint32_t kAll = 0b11;
+constexpr std::uint32_t kEveryJoint = 0b11;
 constexpr std::uint32_t kFirst = 0b01;
 
 // A slide and a hinge, 2 ms a cycle.
@@ -36,11 +36,11 @@ TEST(BrakeWatch, AJointMayMoveByItsPlayAndNoFurther) {
   for (const double way : {0.45e-3, 0.55e-3}) {
     Watched w;
     w.at = {0.3, 1.0};
-    w.hold(500, kAll, 0);
-    w.hold(50, kAll, kAll);
+    w.hold(500, kEveryJoint, 0);
+    w.hold(50, kEveryJoint, kEveryJoint);
     EXPECT_FALSE(w.watch.slip());
     w.at[0] -= way;
-    w.hold(1, kAll, kAll);
+    w.hold(1, kEveryJoint, kEveryJoint);
     const auto slip = w.watch.slip();
     ASSERT_EQ(slip.has_value(), way > 5e-4) << way;
     if (!slip) continue;
@@ -53,11 +53,11 @@ TEST(BrakeWatch, AJointMayMoveByItsPlayAndNoFurther) {
 // Not from the last one: they may go off seconds apart.
 TEST(BrakeWatch, EachJointCountsFromWhereItsOwnDriveWentOff) {
   Watched w;
-  w.hold(500, kAll, 0);
-  w.hold(1, kAll, kFirst);
+  w.hold(500, kEveryJoint, 0);
+  w.hold(1, kEveryJoint, kFirst);
   w.at[0] -= 1e-3;  // the other is still on
-  w.hold(500, kAll, kFirst);
-  w.hold(1, kAll, kAll);
+  w.hold(500, kEveryJoint, kFirst);
+  w.hold(1, kEveryJoint, kEveryJoint);
   const auto slip = w.watch.slip();
   ASSERT_TRUE(slip);
   EXPECT_EQ(slip->joint, 0);
@@ -69,36 +69,36 @@ TEST(BrakeWatch, WhatMovesAsItsPowerGoesMayRollOut) {
     Watched w;
     for (int i = 0; i < 1000; ++i) {
       w.at[0] += 40e-6;
-      w.hold(1, kAll, 0);
+      w.hold(1, kEveryJoint, 0);
     }
-    w.hold(1, kAll, kAll);
+    w.hold(1, kEveryJoint, kEveryJoint);
     w.at[0] += way;
-    w.hold(1, kAll, kAll);
+    w.hold(1, kEveryJoint, kEveryJoint);
     EXPECT_EQ(w.watch.slip().has_value(), way > 2.5e-3) << way;
   }
 }
 
 TEST(BrakeWatch, AJointUnderPowerIsNotJudgedButNotWatchedEither) {
   Watched w;
-  w.hold(100, kAll, 0);
-  w.hold(1, kAll, kAll);
+  w.hold(100, kEveryJoint, 0);
+  w.hold(1, kEveryJoint, kEveryJoint);
   EXPECT_EQ(w.watch.unwatched(), 0U);
-  w.hold(1, kAll, kFirst);
+  w.hold(1, kEveryJoint, kFirst);
   w.at[1] += 1.0;
-  w.hold(1, kAll, kFirst);
+  w.hold(1, kEveryJoint, kFirst);
   EXPECT_FALSE(w.watch.slip());
   EXPECT_EQ(w.watch.unwatched(), 0b10U);
 }
 
 TEST(BrakeWatch, SomeAnswersMayBeLostButNotAllOfThem) {
   Watched w;
-  EXPECT_EQ(w.watch.unwatched(), kAll) << "nobody has ever answered";
-  w.hold(100, kAll, kAll);
-  w.hold(10, kFirst, kAll);
+  EXPECT_EQ(w.watch.unwatched(), kEveryJoint) << "nobody has ever answered";
+  w.hold(100, kEveryJoint, kEveryJoint);
+  w.hold(10, kFirst, kEveryJoint);
   EXPECT_EQ(w.watch.unwatched(), 0U);
-  w.hold(1, kFirst, kAll);
+  w.hold(1, kFirst, kEveryJoint);
   EXPECT_EQ(w.watch.unwatched(), 0b10U);
-  w.hold(1, kAll, kAll);
+  w.hold(1, kEveryJoint, kEveryJoint);
   EXPECT_EQ(w.watch.unwatched(), 0U);
 }
 

@@ -12,7 +12,7 @@ namespace tenon::sim {
 namespace {
 
 constexpr double kCountsOfRange = 65535.0;
-constexpr double kPermille = 1000.0;
+constexpr double kPermilleOfRated = 1000.0;
 constexpr double kFriction_Nm = 0.5;              // chosen
 constexpr double kFrictionDamping_Nmsprad = 1e6;  // so that friction is dry
 constexpr std::uint8_t kRoom_degC = 25;
@@ -136,7 +136,7 @@ void MitDrive::answer() {
   report.velocity_radps = measurement_.velocity_countsps / counts_per_rad();
   // Effort comes in the joint's direction.
   report.torque_Nm = std::copysign(1.0, counts_per_unit_) * measurement_.torque_permille /
-                     kPermille * rated_effort_;
+                     kPermilleOfRated * rated_effort_;
   report.board_degC = report.coil_degC = kRoom_degC;
   outbox_.push_back(report_frame(registers_.at(mit::kMasterId), report, ranges()));
 }
@@ -155,12 +155,12 @@ VirtualDrive::Demand MitDrive::demand(std::int64_t /*step_ns*/) {
   demand.position_counts = measurement_.position_counts;
   demand.impedance = Impedance{};
   const Fault* loss = faults_.find(FaultKind::kTorqueLoss);
-  demand.torque_max_permille =
-      kPermille * real(mit::kTorqueMax) / rated_effort_ * (loss == nullptr ? 1.0 : loss->value);
+  demand.torque_max_permille = kPermilleOfRated * real(mit::kTorqueMax) / rated_effort_ *
+                               (loss == nullptr ? 1.0 : loss->value);
   if (!demand.powered && let_go_) {
     // Nothing but the gear's friction is left, which brings a fallen arm to rest.
     demand.powered = true;
-    demand.torque_max_permille = kPermille * kFriction_Nm / rated_effort_;
+    demand.torque_max_permille = kPermilleOfRated * kFriction_Nm / rated_effort_;
     demand.impedance = Impedance{0.0, kFrictionDamping_Nmsprad, 0.0};
   }
   if (state_ != mit::kStateOn || !order_) return demand;

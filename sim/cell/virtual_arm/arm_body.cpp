@@ -16,8 +16,6 @@ constexpr double kLinkRadius_m = 0.15;
 constexpr double kPayloadRadius_m = 0.05;
 constexpr double kPayloadMassMin_kg = 0.01;
 
-Vector3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
-
 Eigen::Matrix3d rotation_of_body(dBodyID body) {
   const dReal* r = dBodyGetRotation(body);  // rows of four
   Eigen::Matrix3d rotation;

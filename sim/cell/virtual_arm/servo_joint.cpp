@@ -15,8 +15,6 @@ constexpr double kIntegralPeriodsMin = 4.0;
 constexpr double kLeastImpedance = 1e-6;  // N s/m, Nm s/rad: a motor row needs some
 constexpr double kPlayDamping = 0.02;     // of the grease between the flanks, in D
 
-Vector3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
-
 }  // namespace
 
 ServoJoint::ServoJoint(const OdeWorld& world, const Joint& joint, const Parameters& parameters,

@@ -7,14 +7,13 @@
 
 #include "sim/physics/contacts/contact_points.h"
 #include "sim/physics/solver/contact_row.h"
+#include "sim/physics/solver/ode_world.h"
 
 namespace tenon::sim {
 namespace {
 
 // Two or three do where few faces touch.
 constexpr int kIterationsMax = 60;
-
-Vector3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
 

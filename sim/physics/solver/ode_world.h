@@ -39,6 +39,9 @@ class OdeWorld {
   dJointGroupID contacts_;
 };
 
+/// ODE's own vectors.
+[[nodiscard]] inline Vector3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
+
 void set_pose(dBodyID body, const Pose& pose);
 [[nodiscard]] Pose pose_of(dBodyID body);
 
