@@ -79,6 +79,7 @@ ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& 
   supervision_.commanded(velocity, joints_.position());
   record_.velocity = data_of(velocity);
   const Command command{request(), joints_.position()};
+  power_asked_ = power_asked_ || command.request == ArmRequest::kEnabled;
   write_record(now_ns, feedback, command);
   return command;
 }
@@ -315,8 +316,9 @@ void ControlTask::follow_brakes(const ArmFeedback& feedback) {
 
 // After every end, and each for itself: one drive that is still on, or silent, hides no other's.
 ControlTask::Turn ControlTask::watch_brakes() {
-  // Without brakes there is nothing to watch: the arm falls, as its cell allows.
-  if (!cell_.robot.brakes) return Event::kHeld;
+  // Without brakes there is nothing to watch: the arm falls, as its cell allows. Nor where a run
+  // was stopped before it asked for power: no brake has opened.
+  if (!cell_.robot.brakes || !power_asked_) return Event::kHeld;
   const bool told = ending_.slip.joint >= 0;
   if (!told && time_in_state_s() < parameters_.brake_watch_s) {
     const auto slip = brake_watch_.slip();

@@ -166,6 +166,7 @@ class ControlTask {
 
   State state_ = State::kWaiting;
   std::int64_t state_since_ns_ = 0;
+  bool power_asked_ = false;  ///< in any cycle
   std::int64_t motion_ns_ = 0;
   std::uint64_t sequence_ = 0;
   bool stop_requested_ = false;

@@ -5,6 +5,7 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <termios.h>
 
@@ -12,6 +13,7 @@
 #include <memory>
 
 #include "shared/base/error.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::hw {
 namespace {
@@ -39,16 +41,35 @@ void set_non_blocking(const Descriptor& descriptor) {
   ::fcntl(descriptor.get(), F_SETFL, ::fcntl(descriptor.get(), F_GETFL) | O_NONBLOCK);
 }
 
+/// A connect() that a signal interrupts goes on by itself, and may even have been made: whoever
+/// listens nearby has answered within this time.
+constexpr std::int64_t kInterruptedConnect_ns = 100'000'000;
+
+/// @return 0 or the error
+int connect_once(int socket, const addrinfo& to) {
+  if (::connect(socket, to.ai_addr, to.ai_addrlen) == 0) return 0;
+  if (errno != EINTR) return errno;
+  const std::int64_t until_ns = monotonic_now_ns() + kInterruptedConnect_ns;
+  pollfd made{socket, POLLOUT, 0};
+  for (std::int64_t left_ns = kInterruptedConnect_ns; left_ns > 0;
+       left_ns = until_ns - monotonic_now_ns()) {
+    if (::poll(&made, 1, static_cast<int>(left_ns / 1'000'000)) > 0) {
+      int error = 0;
+      socklen_t size = sizeof(error);
+      return ::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
+    }
+  }
+  return EINTR;
+}
+
 }  // namespace
 
 Descriptor connect_any(const addrinfo* addresses) {
   int error = EADDRNOTAVAIL;
   for (const addrinfo* to = addresses; to != nullptr; to = to->ai_next) {
     Descriptor socket(::socket(to->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    if (socket.is_open() && ::connect(socket.get(), to->ai_addr, to->ai_addrlen) == 0) {
-      return socket;
-    }
-    error = errno;
+    error = socket.is_open() ? connect_once(socket.get(), *to) : errno;
+    if (error == 0) return socket;
     if (error == EINTR) break;  // asked to stop
   }
   errno = error;

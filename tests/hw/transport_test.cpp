@@ -5,9 +5,11 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <random>
 #include <string>
@@ -34,6 +36,42 @@ TEST(SlcanOverTcp, FramesGoBothWays) {
   ASSERT_TRUE(receive_soon(*client, received));
   EXPECT_EQ(received.frame, frame_of(0x190, 8));
   EXPECT_EQ(client->status().malformed, 0u);
+}
+
+class Alarms {
+ public:
+  Alarms() {
+    struct sigaction action {};
+    action.sa_handler = [](int) {};  // without SA_RESTART, as where a stop is asked for
+    ::sigaction(SIGALRM, &action, &before_);
+    const itimerval often{{0, 15}, {0, 15}};
+    ::setitimer(ITIMER_REAL, &often, nullptr);
+  }
+  ~Alarms() {
+    const itimerval never{};
+    ::setitimer(ITIMER_REAL, &never, nullptr);
+    ::sigaction(SIGALRM, &before_, nullptr);
+  }
+  Alarms(const Alarms&) = delete;
+  Alarms& operator=(const Alarms&) = delete;
+
+ private:
+  struct sigaction before_ {};
+};
+
+// A stop that is asked for while a bus is being opened ends the run in good order, not as one whose
+// bus cannot be reached.
+TEST(SlcanOverTcp, ASignalDoesNotBreakAConnectionThatIsBeingMade) {
+  const Descriptor listener = listen_tcp("127.0.0.1", 0);
+  sockaddr_in open{};
+  socklen_t size = sizeof(open);
+  ASSERT_EQ(::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&open), &size), 0);
+  const Alarms alarms;
+  for (int k = 0; k < 2000; ++k) {
+    ASSERT_TRUE(connect_tcp("127.0.0.1", ntohs(open.sin_port)).is_open()) << k;
+    while (!Descriptor(::accept(listener.get(), nullptr, nullptr)).is_open()) {
+    }
+  }
 }
 
 // As where a host's first address is one of IPv6 that the other end does not serve.

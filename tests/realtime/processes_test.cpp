@@ -232,10 +232,11 @@ TEST_F(ProcessesTest, CtrlCDuringTheBringUpLeavesAResult) {
                      "--can", sim.uri(), "--lcm-url", "none", "--json", result});
   ASSERT_TRUE(exec.wait_until([&] { return exec.out().find("cycle 2 ms") != std::string::npos; }));
   exec.send(SIGINT);
-  EXPECT_EQ(exec.wait(), 1);
+  EXPECT_EQ(exec.wait(), 1) << exec.err();
   sim.process().send(SIGCONT);
   const nlohmann::json json = nlohmann::json::parse(elsewhere.get("result.json"));
   EXPECT_EQ(json.at("reason"), "stop_requested");
+  EXPECT_EQ(json.at("message"), "stopped on request");
   EXPECT_EQ(json.at("exit_code"), 1);
   EXPECT_EQ(json.at("steps").size(), 0U);
 }
