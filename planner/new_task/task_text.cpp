@@ -152,6 +152,10 @@ constexpr const char* kPhysics = R"(
 physics:
   friction: {low: 0.1, nominal: 0.3, high: 0.6}
   contact_stiffness_Npm: 5e4
+
+# Parts from files take longer than boxes do.
+search:
+  time_limit_s: 300
 )";
 
 std::string compliance_text(const NewTask& task, bool turns) {

@@ -43,7 +43,8 @@ Solid::Solid(TriangleMesh mesh)
     : centre_m_(box_around(mesh).center()),
       size_m_(box_around(mesh).sizes()),
       mesh_(moved(std::move(mesh), -centre_m_)),
-      tree_(mesh_) {
+      tree_(mesh_),
+      cells_(size_m_) {
   find_normals();
 }
 
@@ -136,20 +137,7 @@ Solid::Place Solid::place_at(const Vector3& point_m, const NearestOnTriangle& ne
 }
 
 Solid::Place Solid::place(const Vector3& point_m, std::uint32_t guess) const {
-  return place_at(point_m, tree_.nearest(point_m, guess));
-}
-
-bool Solid::nearby(const Vector3& point_m, const Place& place, double way_m, std::size_t count_max,
-                   std::vector<std::uint32_t>& triangles) const {
-  // The nearest comes farther away by the way, any other nearer by it; and a little for rounding.
-  constexpr double kRounding = 1.0 + 1e-9;
-  const double radius_m = kRounding * (std::abs(place.distance_m) + 2.0 * way_m);
-  return tree_.within(point_m, radius_m, count_max, triangles);
-}
-
-Solid::Place Solid::place_among(const Vector3& point_m, std::span<const std::uint32_t> triangles,
-                                std::uint32_t guess) const {
-  return place_at(point_m, tree_.nearest_of(point_m, triangles, guess));
+  return place_at(point_m, cells_.nearest(tree_, point_m, guess));
 }
 
 }  // namespace tenon

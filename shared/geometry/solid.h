@@ -4,10 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <unordered_map>
 #include <vector>
 
+#include "shared/geometry/nearest_cells.h"
 #include "shared/geometry/triangle_mesh.h"
 #include "shared/geometry/triangle_tree.h"
 
@@ -35,14 +35,6 @@ class Solid {
   /// @param guess a triangle that is probably near: it only saves time
   [[nodiscard]] Place place(const Vector3& point_m, std::uint32_t guess = 0) const;
 
-  /// All triangles that can be nearest as long as the point moves no farther than this, in
-  /// ascending order. @return false where there are more than `count_max`, and `triangles` is empty
-  [[nodiscard]] bool nearby(const Vector3& point_m, const Place& place, double way_m,
-                            std::size_t count_max, std::vector<std::uint32_t>& triangles) const;
-  /// What place() says, if the nearest triangle is one of these; `guess` is one of them.
-  [[nodiscard]] Place place_among(const Vector3& point_m, std::span<const std::uint32_t> triangles,
-                                  std::uint32_t guess) const;
-
   struct Edge {
     std::uint32_t from = 0;  ///< corners of the mesh
     std::uint32_t to = 0;
@@ -64,6 +56,7 @@ class Solid {
   Vector3 size_m_;
   TriangleMesh mesh_;
   TriangleTree tree_;
+  NearestCells cells_;
   std::vector<Vector3> face_normals_;
   std::vector<std::array<Vector3, 3>> edge_normals_;
   std::vector<Vector3> corner_normals_;

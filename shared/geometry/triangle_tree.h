@@ -64,7 +64,7 @@ class TriangleTree {
   /// @return false where they are more than `count_max`: `triangles` is then empty
   [[nodiscard]] bool within(const Vector3& point_m, double radius_m, std::size_t count_max,
                             std::vector<std::uint32_t>& triangles) const;
-  /// As nearest(), of these triangles alone; `guess` is one of them.
+  /// As nearest(), of these triangles and the guess alone.
   [[nodiscard]] NearestOnTriangle nearest_of(const Vector3& point_m,
                                              std::span<const std::uint32_t> triangles,
                                              std::uint32_t guess) const;

@@ -9,6 +9,7 @@
 
 #include "shared/base/random.h"
 #include "shared/geometry/extrusion.h"
+#include "shared/geometry/nearest_cells.h"
 #include "tests/support/meshes.h"
 
 namespace tenon {
@@ -102,30 +103,25 @@ TEST(Solid, AGuessChangesNoBit) {
   }
 }
 
-TEST(Solid, WhatIsNearbyIsEnoughForAsFarAsItSays) {
-  const Solid solid(extruded(tests::round_profile(0.01, 40), 0.03));
-  constexpr double kWay_m = 1e-3;
+TEST(NearestCells, WhatACellRemembersIsWhatTheTreeFinds) {
+  // Each facet of the round is as near to its axis as any other: more than a cell remembers.
+  const Solid solid(extruded(tests::round_profile(0.01, 100), 0.03));
+  const TriangleTree tree(solid.mesh());
+  const NearestCells cells(solid.size_m());
   Random random(4);
-  std::size_t known = 0;
-  for (int i = 0; i < 3000; ++i) {
-    const Vector3 point_m = drawn_in(random, 1.2 * solid.size_m());
-    const Solid::Place place = solid.place(point_m);
-    std::vector<std::uint32_t> triangles;
-    if (!solid.nearby(point_m, place, kWay_m, 64, triangles)) {
-      EXPECT_TRUE(triangles.empty());
-      continue;
+  for (int i = 0; i < 20000; ++i) {
+    // Some are beyond all cells, some are asked for twice, some lie on the faces between two.
+    Vector3 point_m = drawn_in(random, (i % 3 == 0 ? 2.5 : 1.1) * solid.size_m());
+    if (i % 5 == 0) point_m.x() = std::round(point_m.x() / 2e-3) * 2e-3;
+    for (const std::uint32_t guess : {0U, static_cast<std::uint32_t>(i % 100)}) {
+      const NearestOnTriangle found = cells.nearest(tree, point_m, guess);
+      const NearestOnTriangle expected = tree.nearest(point_m);
+      ASSERT_EQ(found.at_m, expected.at_m) << point_m.transpose();
+      ASSERT_EQ(found.square_m2, expected.square_m2);
+      ASSERT_EQ(found.triangle, expected.triangle);
+      ASSERT_EQ(found.part, expected.part);
     }
-    ++known;
-    EXPECT_LE(triangles.size(), 64U);
-    const Vector3 there_m = point_m + 0.999 * kWay_m * drawn_in(random, {1, 1, 1}).normalized();
-    const Solid::Place all = solid.place(there_m);
-    const Solid::Place among = solid.place_among(there_m, triangles, place.triangle);
-    EXPECT_EQ(among.distance_m, all.distance_m);
-    EXPECT_EQ(among.outwards, all.outwards);
-    EXPECT_EQ(among.triangle, all.triangle);
   }
-  EXPECT_GT(known, 1500U);
-  EXPECT_LT(known, 3000U);  // near the axis all are near
 }
 
 }  // namespace

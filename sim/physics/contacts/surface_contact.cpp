@@ -10,10 +10,6 @@ namespace {
 constexpr double kNear_m = 1e-3;
 // A ball that may come near within this is looked at anew together with the others.
 constexpr double kSoon_m = 0.5e-3;
-// A point that is asked for again within this is worth remembering what it can be nearest to, for
-// the first of these ways, or where that is too much for the second.
-constexpr double kAgain_m = 0.25e-3;
-constexpr double kFineWay_m = 0.15e-3;
 // Looked at anew so much earlier than need be, so that rounding decides nothing.
 constexpr double kEarly_m = 1e-9;
 
@@ -68,40 +64,16 @@ void SurfaceContact::forget() {
     side->complete_until_m = 0.0;
     std::fill(side->apart_until_m.begin(), side->apart_until_m.end(), 0.0);
     std::fill(side->balls.begin(), side->balls.end(), Side::Ball{});
-    for (Side::Point& point : side->points) {
-      point.parts_until_m = point.dense_until_m = 0.0;
-      point.asked_m = -kNear_m;
-    }
   }
 }
 
-const Surface::Place& SurfaceContact::place(Side& side, std::uint32_t index, const Pose& X_SE,
-                                            double moved_m) {
+const Surface::Place& SurfaceContact::place(Side& side, std::uint32_t index,
+                                            const Pose& X_SE) const {
   Side::Point& point = side.points[index];
   if (point.time == time_) return point.place;
   point.time = time_;
   const Vector3 point_m = point_in(X_SE, side.edges->points_m()[index]);
-  Surface::Place& place = point.place;
-  if (moved_m < point.parts_until_m) {
-    place = side.surface->place_among(point_m, point.parts, place.guess);
-    return place;
-  }
-  place = side.surface->place(point_m, place.guess);
-  if (moved_m - point.asked_m < kAgain_m && point.dense_until_m <= moved_m) {
-    remember_parts(side, point, point_m, moved_m);
-  }
-  point.asked_m = moved_m;
-  return place;
-}
-
-void SurfaceContact::remember_parts(const Side& side, Side::Point& point, const Vector3& point_m,
-                                    double moved_m) const {
-  for (const double way_m : {kNear_m, kFineWay_m}) {
-    if (!side.surface->nearby(point_m, point.place, way_m, point.parts)) continue;
-    point.parts_until_m = moved_m + way_m;
-    return;
-  }
-  point.dense_until_m = moved_m + kNear_m;
+  return point.place = side.surface->place(point_m, point.place.guess);
 }
 
 void SurfaceContact::gather(Side& side, const Pose& X_SE, const Stand& stand) {
@@ -150,7 +122,7 @@ double SurfaceContact::look_at(Side& side, std::uint32_t index, const Pose& X_SE
   const bool held = &side == &held_;
   const auto end = [&](std::uint32_t point) -> const Surface::Place& {
     const bool first = side.points[point].time != time_;
-    const Surface::Place& at = place(side, point, X_SE, stand.moved_m);
+    const Surface::Place& at = place(side, point, X_SE);
     if (first && at.distance_m <= stand.offset_m) {
       // On the environment, as everywhere.
       const Vector3 at_m = held ? at.nearest_m : point_in(X_SE, edges.points_m()[point]);

@@ -47,19 +47,13 @@ class SurfaceContact {
     };
     std::vector<Ball> balls;
     struct Point {
-      Surface::Place place;              ///< in the surface's frame
-      std::uint64_t time = 0;            ///< when it was
-      std::vector<std::uint32_t> parts;  ///< of the surface, that it can be nearest to
-      double parts_until_m = 0.0;        ///< before that
-      double asked_m = 0.0;              ///< when all of the surface was last asked
-      double dense_until_m = 0.0;        ///< the parts are too many before
+      Surface::Place place;    ///< in the surface's frame
+      std::uint64_t time = 0;  ///< when it was
     };
     std::vector<Point> points;  ///< of the edges
   };
   void gather(Side& side, const Pose& X_SE, const Stand& stand);
-  const Surface::Place& place(Side& side, std::uint32_t point, const Pose& X_SE, double moved_m);
-  void remember_parts(const Side& side, Side::Point& point, const Vector3& point_m,
-                      double moved_m) const;
+  const Surface::Place& place(Side& side, std::uint32_t point, const Pose& X_SE) const;
   /// @return a gap, m
   double look_at(Side& side, std::uint32_t piece, const Pose& X_SE, const Stand& stand);
 

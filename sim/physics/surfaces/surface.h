@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "shared/math/pose.h"
@@ -27,19 +26,6 @@ class Surface {
   };
   /// The same numbers whatever the guess.
   [[nodiscard]] virtual Place place(const Vector3& point_m, std::uint32_t guess) const = 0;
-
-  /// Parts of the surface, by numbers that only the kind knows: all that can be nearest as long as
-  /// the point moves no farther than this. @return false where asking place() is as good
-  [[nodiscard]] virtual bool nearby(const Vector3& /*point_m*/, const Place& /*place*/,
-                                    double /*way_m*/, std::vector<std::uint32_t>& /*parts*/) const {
-    return false;
-  }
-  /// The same numbers as place(), sooner. @param parts of nearby(), the guess among them
-  [[nodiscard]] virtual Place place_among(const Vector3& point_m,
-                                          std::span<const std::uint32_t> /*parts*/,
-                                          std::uint32_t guess) const {
-    return place(point_m, guess);
-  }
 
   struct Piece {
     std::uint32_t from = 0;  ///< indices of points

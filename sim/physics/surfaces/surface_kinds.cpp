@@ -117,27 +117,11 @@ class SolidSurface final : public Surface {
   }
 
   [[nodiscard]] Place place(const Vector3& point_m, std::uint32_t guess) const override {
-    return place_of(solid_->place(point_m, guess));
-  }
-
-  [[nodiscard]] bool nearby(const Vector3& point_m, const Place& place, double way_m,
-                            std::vector<std::uint32_t>& parts) const override {
-    // With more the tree is as fast.
-    constexpr std::size_t kPartsMax = 64;
-    return solid_->nearby(point_m, {place.distance_m, place.outwards, place.nearest_m, place.guess},
-                          way_m, kPartsMax, parts);
-  }
-
-  [[nodiscard]] Place place_among(const Vector3& point_m, std::span<const std::uint32_t> parts,
-                                  std::uint32_t guess) const override {
-    return place_of(solid_->place_among(point_m, parts, guess));
-  }
-
- private:
-  static Place place_of(const Solid::Place& found) {
+    const Solid::Place found = solid_->place(point_m, guess);
     return {found.distance_m, found.outwards, found.nearest_m, found.triangle};
   }
 
+ private:
   std::shared_ptr<const Solid> solid_;
 };
 
