@@ -254,7 +254,7 @@ ControlTask::Turn ControlTask::end_tare() {
     // wind up or whose sensor warms up creeps.
     if (++unsteady_tares_ >= kTareTries) {
       // A zero that moves steadily is unsteady, too: the cause is named and not its effect.
-      const bool steadily = drifts && sensor_tare_.deviation_beside(drift_->index, drift_->value) <=
+      const bool steadily = drifts && sensor_tare_.deviation_beside_drift(drift_->index) <=
                                           sensor_tare_.deviation_max(drift_->index);
       return steadily ? *drift_ : unsteady(sensor_tare_);
     }

@@ -47,6 +47,8 @@ class SensorTare {
     const Vector6 before = sample - mean_;
     mean_ += before / count_;
     squares_ += before.cwiseProduct(sample - mean_);
+    // Likewise, against the sample's number.
+    products_ += 0.5 * (count_ - 1) * before;
     if (count_ >= parameters_.samples) decide();
     return status_;
   }
@@ -56,11 +58,14 @@ class SensorTare {
 
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] const Vector6& mean() const { return mean_; }
-  /// What is left of an axis' standard deviation once a steady rise is taken off that parts the
-  /// means of both halves by `moved`.
-  [[nodiscard]] double deviation_beside(int axis, double moved) const {
-    const double all = deviation(axis);
-    return std::sqrt(std::max(0.0, all * all - moved * moved / 3.0));
+  /// What is left of an axis' standard deviation once the line is taken off that fits its samples
+  /// best: noise, without a steady drift.
+  [[nodiscard]] double deviation_beside_drift(int axis) const {
+    if (count_ < 3) return 0.0;
+    const double n = count_;
+    const double spread = n * (n * n - 1.0) / 12.0;  // squares of the samples' numbers
+    const double drift = products_[axis] * products_[axis] / spread;
+    return std::sqrt(std::max(0.0, squares_[axis] - drift) / (n - 2.0));
   }
   /// Axis 0..5 whose standard deviation is largest against its bound.
   [[nodiscard]] int worst_axis() const { return worst_axis_; }
@@ -89,6 +94,7 @@ class SensorTare {
   int worst_axis_ = 0;
   Vector6 mean_ = Vector6::Zero();
   Vector6 squares_ = Vector6::Zero();
+  Vector6 products_ = Vector6::Zero();
 };
 
 /// How a run ends whose sensor was kUnsteady.

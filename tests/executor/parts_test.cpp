@@ -176,6 +176,22 @@ TEST(SensorTare, OneLoudAxisIsRefusedByItsNumber) {
   EXPECT_NEAR(tare.deviation(4), 0.1005, 1e-3);
 }
 
+// Noise of 0.2 N on a zero that moves by 0.5 to 500 N in the while.
+TEST(SensorTare, WhatNoiseIsBesideADriftIsFoundHoweverStrongThatIs) {
+  for (const double drift_N : {0.0, 0.5, 5.0, 50.0, 500.0}) {
+    SensorTare tare({.samples = 200});
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0.0, 0.2);
+    for (int i = 0; i < 200; ++i) {
+      Vector6 sample = Vector6::Zero();
+      sample[1] = 20.0 + drift_N * i / 200.0 + noise(random);
+      (void)tare.add(sample);
+    }
+    EXPECT_NEAR(tare.deviation_beside_drift(1), 0.2, 0.03) << drift_N;
+    EXPECT_EQ(tare.deviation_beside_drift(0), 0.0);
+  }
+}
+
 TEST(LeakyBucket, OneBadCycleInTwentyGoesOnForEverAndABurstDoesNot) {
   LeakyBucket bucket({.capacity = 50.0, .leak = 0.05});
   for (int i = 0; i < 100'000; ++i) {
