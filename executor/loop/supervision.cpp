@@ -30,7 +30,9 @@ std::optional<Ending> Supervision::update(const ArmFeedback& feedback, bool foll
   // A jump first: what it leads to is felt and seen later.
   if (jumped) return jumped;
   if (sensor) return sensor;
-  if (feedback.force_stopped_N > 0.0) {
+  // At the end of its range it is none, and the arm says so.
+  const bool believed = feedback.fault.kind != ArmFaultKind::kSensorInvalid;
+  if (believed && feedback.force_stopped_N > 0.0) {
     return Ending{.reason = EndReason::kForceFault,
                   .value = feedback.force_stopped_N,
                   .bound = cell_.force_fault_N};

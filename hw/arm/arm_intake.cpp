@@ -130,6 +130,9 @@ bool ArmIntake::take_wrench_frame(const CanFrame& frame) noexcept {
       break;
   }
   if (wrench_intake_.force_N()) judge_force(*wrench_intake_.force_N());
+  if (const auto& end = wrench_intake_.saturated()) {
+    supervision_.raise(saturation_fault(sensor_node_, *end));
+  }
   counters_.late_frames += cycle_open_ ? 0 : 1;
   counters_.wrench_halves_torn += wrench_intake_.torn() - torn_before;
   if (wrench_intake_.sample()) take_wrench(*wrench_intake_.sample());
@@ -143,9 +146,6 @@ void ArmIntake::judge_force(const Vector3& force_N) noexcept {
 }
 
 void ArmIntake::take_wrench(const WrenchIntake::Sample& sample) noexcept {
-  if (wrench_intake_.saturated()) {
-    supervision_.raise(saturation_fault(sensor_node_, *wrench_intake_.saturated()));
-  }
   feedback_.wrench = sample.wrench;
   wrench_late_ = !cycle_open_;
   feedback_.wrench_counter = sample.counter;

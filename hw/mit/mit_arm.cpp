@@ -130,6 +130,8 @@ bool MitArm::receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept {
   if (state() != ArmState::kUnconfigured) {
     (void)drain(now_ns);
     supervision_.look_at_bus(bus_.status());
+    // What they answer to the last request the executor is told in this cycle.
+    supervision_.look_at_motors(granted_);
   }
   feedback = feedback_;
   feedback.force_stopped_N = supervision_.force_stopped_N();
@@ -236,10 +238,10 @@ bool MitArm::take_wrench(const CanFrame& frame) noexcept {
       bus_.flush();
     }
   }
+  if (const auto& end = wrench_intake_.saturated()) {
+    supervision_.raise(saturation_fault(robot_.sensor.node, *end));
+  }
   if (const auto& sample = wrench_intake_.sample()) {
-    if (const auto& end = wrench_intake_.saturated()) {
-      supervision_.raise(saturation_fault(robot_.sensor.node, *end));
-    }
     feedback_.wrench = sample->wrench;
     feedback_.wrench_counter = sample->counter;
     feedback_.wrench_fresh = true;

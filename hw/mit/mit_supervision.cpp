@@ -124,7 +124,7 @@ void MitSupervision::advance(std::int64_t now_ns, ArmRequest wanted) noexcept {
   if (off && wanted == ArmRequest::kDisabled) force_stopped_N_ = 0.0;
 }
 
-void MitSupervision::look_at_motors(ArmRequest request) noexcept {
+void MitSupervision::look_at_motors(ArmRequest asked) noexcept {
   const bool stopping = state_ == ArmState::kStopping;
   if (!stopping && state_ != ArmState::kEnabling && state_ != ArmState::kEnabled) return;
   for (const MotorChannel& motor : motors_) {
@@ -132,7 +132,7 @@ void MitSupervision::look_at_motors(ArmRequest request) noexcept {
     const bool expected_on = state_ == ArmState::kEnabled || motor.reached_on();
     if (motor.faulty() && (expected_on || stopping)) {
       raise({ArmFaultKind::kDriveFault, motor.node(), 0, motor.state()});
-    } else if (request == ArmRequest::kEnabled && expected_on && !motor.on()) {
+    } else if (asked == ArmRequest::kEnabled && expected_on && !motor.on()) {
       raise({ArmFaultKind::kDriveState, motor.node(), 0, motor.state()});
     }
   }

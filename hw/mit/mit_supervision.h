@@ -50,6 +50,8 @@ class MitSupervision {
   // Told as it happens.
   void raise(const ArmFault& fault) noexcept;
   void look_at_bus(const CanBusStatus& status) noexcept;
+  /// Their states, as they answered what they were asked last.
+  void look_at_motors(ArmRequest asked) noexcept;
   void heard(const canopen::Heartbeat& heartbeat, std::int64_t now_ns) noexcept;
   void heard(const canopen::Emergency& emergency) noexcept;
   void frame_refused() noexcept { refused_ = true; }
@@ -67,7 +69,6 @@ class MitSupervision {
 
  private:
   void enter_state(ArmState state, std::int64_t now_ns) noexcept;
-  void look_at_motors(ArmRequest request) noexcept;
   void enable(std::int64_t now_ns) noexcept;
 
   const std::span<const MotorChannel> motors_;

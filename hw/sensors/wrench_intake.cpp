@@ -28,6 +28,8 @@ WrenchSource::Taken WrenchIntake::take(const CanFrame& frame) noexcept {
   const WrenchSource::Taken taken = source_.take(frame, half);
   if (taken != WrenchSource::Taken::kHalf) return taken;
   force_N_ = source_.force_N(half);
+  // Whatever the other half says: what is at its end is no force.
+  if (force_N_) look_for_ends({force_N_->data(), 3}, half.raw);
   halves_seen_ = static_cast<std::uint8_t>(halves_seen_ | (1u << half.place));
   const auto paired = pairing_.process(half);
   if (paired && !paired->repeated) take_sample(*paired);
@@ -36,18 +38,22 @@ WrenchSource::Taken WrenchIntake::take(const CanFrame& frame) noexcept {
 
 void WrenchIntake::take_sample(const WrenchPairing::Sample& paired) noexcept {
   sample_ = Sample{source_.wrench(paired.counts), paired.counter};
-  for (std::uint8_t axis = 0; axis < 6; ++axis) {
+  look_for_ends({sample_->wrench.data(), 6}, paired.counts);
+}
+
+void WrenchIntake::look_for_ends(std::span<const double> readings,
+                                 std::span<const std::int16_t> raw) noexcept {
+  for (std::size_t axis = 0; axis < readings.size(); ++axis) {
     const double range = axis < 3 ? sensor_.force_range_N : sensor_.torque_range_Nm;
-    const double reading = sample_->wrench[axis];
+    const double reading = readings[axis];
     if (range <= 0.0 || std::abs(reading) < range) continue;
-    saturated_ = Saturated{axis, paired.counts[axis], reading};
+    saturated_ = Saturated{static_cast<std::uint8_t>(axis), raw[axis], reading};
     return;
   }
   // A range of 0 is not given; the 16 bits still end somewhere.
-  for (std::uint8_t place = 0; place < 6; ++place) {
-    const std::int16_t raw = paired.counts[place];
-    if (std::abs(int{raw}) < kRawEnd) continue;
-    saturated_ = Saturated{place, raw, std::nullopt};
+  for (std::size_t place = 0; place < raw.size(); ++place) {
+    if (std::abs(int{raw[place]}) < kRawEnd) continue;
+    saturated_ = Saturated{static_cast<std::uint8_t>(place), raw[place], std::nullopt};
     return;
   }
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "hw/sensors/wrench_pairing.h"
 #include "shared/cell/robot.h"
@@ -40,7 +41,7 @@ class WrenchIntake {
   [[nodiscard]] const std::optional<Vector3>& force_N() const noexcept { return force_N_; }
   /// The whole new sample that the last frame completed.
   [[nodiscard]] const std::optional<Sample>& sample() const noexcept { return sample_; }
-  /// The first axis of that sample beyond its range, else the first raw value at its end.
+  /// The first axis of that force or sample beyond its range, else the first raw value at its end.
   [[nodiscard]] const std::optional<Saturated>& saturated() const noexcept { return saturated_; }
   /// Both halves came since forget_freshness(), of one sample or not.
   [[nodiscard]] bool both_halves_seen() const noexcept { return halves_seen_ == 3; }
@@ -49,6 +50,8 @@ class WrenchIntake {
 
  private:
   void take_sample(const WrenchPairing::Sample& paired) noexcept;
+  /// @param readings N, then Nm  @param raw as many values
+  void look_for_ends(std::span<const double> readings, std::span<const std::int16_t> raw) noexcept;
 
   WrenchSource& source_;
   const ForceTorqueSensor sensor_;

@@ -90,6 +90,20 @@ TEST_F(WrenchIntakeOfCanopenNode, TheFirstAxisAtTheEndOfItsRangeIsNamed) {
   EXPECT_EQ(intake.saturated()->raw, 30000);
 }
 
+// Its other half may come late, or never: a force that is at its end is judged as its frame comes.
+TEST_F(WrenchIntakeOfCanopenNode, AForceAtTheEndOfItsRangeIsNamedByItsHalfAlone) {
+  CanFrame force = canopen_force_frame();
+  force.data[2] = 0xD0;  // fy: -30000 counts, -300 N
+  force.data[3] = 0x8A;
+  (void)intake.take(force);
+  EXPECT_FALSE(intake.sample());
+  ASSERT_TRUE(intake.saturated());
+  EXPECT_EQ(intake.saturated()->place, 1);
+  EXPECT_EQ(intake.saturated()->reading, -300.0);
+  (void)intake.take(canopen_force_frame());
+  EXPECT_FALSE(intake.saturated());
+}
+
 TEST_F(WrenchIntakeOfCanopenNode, FramesOfOthersAndOfAnotherLengthBringNothing) {
   CanFrame frame = canopen_force_frame();
   frame.id = 0x183;
