@@ -1,12 +1,11 @@
-// Shipped robots on drives in the likeness of those that they name: bring-up, a whole plan, every
-// fault. What such a drive cannot be told is what the master says of it at the start.
+// Shipped robots on drives in the likeness of those that they name: bring-up, and a whole
+// plan (matrix/ has every fault). What such a drive cannot be told is what the master says of it at
+// the start.
 
 #include "tests/support/twins.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,8 +13,6 @@
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/drive_settings.h"
 #include "shared/canopen/robot_drives.h"
-#include "tests/faults/matrix/fault_cell.h"
-#include "tests/faults/matrix/fault_kind.h"
 #include "tests/support/frame_filter.h"
 #include "tests/support/planned.h"
 #include "tests/support/rest_watch.h"
@@ -133,42 +130,10 @@ TEST_P(TwinPlan, ADriveThatClampsItsWindowRunsOn) {
   EXPECT_TRUE(result.truth.within_tolerance);
 }
 
-class TwinFaults : public ::testing::TestWithParam<Twin> {};
-
-// What ends only by the drives' own reaction to a lost master: the executor is gone, or cannot
-// reach them.
-bool needs_the_drives(const FaultKind& kind) {
-  static const std::set<std::string> kNames = {"SIGKILL", "SIGSTOP",        "queue full",
-                                               "bus-off", "interface down", "RPDOs lost"};
-  return kNames.contains(kind.name);
-}
-
-TEST_P(TwinFaults, EveryFaultThatItCanHaveIsRiddenOutOrStoppedByName) {
-  const Ground ground(GetParam().cell, GetParam().cell, GetParam().plan_of);
-  const bool alone = canopen_drive(ground.cell.robot.joints[0])
-                         .profile.object(DriveObject::kConnectionOption)
-                         .presence == Presence::kAbsent;
-  for (const FaultKind& kind : fault_kinds()) {
-    // Answers 1.2 ms late are in time at 100 Hz.
-    if (ground.cell.robot.cycle_us > 2000 && std::string(kind.name) == "frames delayed") continue;
-    const Outcome outcome = run_cell(ground, kind, sim::FaultPhase::kFree);
-    std::printf("%s, %s: %s\n", GetParam().cell, kind.name, outcome.text.c_str());
-    if (alone && needs_the_drives(kind)) {
-      EXPECT_NE(outcome.complaint.find("left as"), std::string::npos)
-          << kind.name << ": stays powered, as is said at the start";
-      continue;
-    }
-    EXPECT_EQ(outcome.complaint, "") << kind.name;
-  }
-}
-
 std::string twin_name(const ::testing::TestParamInfo<Twin>& info) { return info.param.cell; }
 
 INSTANTIATE_TEST_SUITE_P(Tree, TwinPlan, ::testing::Values(Twin{"epos4", "gantry3"}), twin_name);
 INSTANTIATE_TEST_SUITE_P(Full, TwinPlan, ::testing::Values(Twin{"lwa4p", "lwa4p"}), twin_name);
-INSTANTIATE_TEST_SUITE_P(Full, TwinFaults,
-                         ::testing::Values(Twin{"epos4", "gantry3"}, Twin{"lwa4p", "lwa4p"}),
-                         twin_name);
 
 }  // namespace
 }  // namespace tenon::tests

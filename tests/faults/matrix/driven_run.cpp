@@ -16,9 +16,10 @@ using sim::FaultPhase;
 
 constexpr std::int64_t kStopAfter_ns = 300'000'000;  // of free motion, for the phase of stopping
 constexpr std::int64_t kLater_ns = 400'000'000;
+constexpr double kWay_m = 0.01;
 constexpr std::int64_t kPause_ns = 1'000'000'000;
 // A masked detector may leave a run without an end.
-constexpr std::int64_t kCyclesMost = 15'000;
+constexpr std::int64_t kMost_ns = 30'000'000'000;
 
 }  // namespace
 
@@ -30,28 +31,54 @@ Ground::Ground(const std::string& cell_name, const std::string& twin, const std:
   WholeRun::Options run_options = with_faults({});
   run_options.twins = twins;
   WholeRun run(cell, planned.task, planned.plan, run_options);
+  JointVector lowest{};
+  JointVector highest{};
   const auto moment = [&] {
     const sim::Truth truth = run.result().truth;
     Moment now;
     for (std::size_t i = 0; i < truth.drives.size(); ++i) now.joints[i] = truth.drives[i].position;
     now.tool_m = truth.tool.position_m;
+    now.lowest = lowest;
+    now.highest = highest;
     return now;
   };
-  start = moment().joints;
+  lowest = highest = start = moment().joints;
   if (!run.prepare()) return;
   std::array<int, sim::kFaultPhases> taken{};
   while (run.cycle()) {
+    const JointVector joints = moment().joints;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      lowest[i] = std::min(lowest[i], joints[i]);
+      highest[i] = std::max(highest[i], joints[i]);
+    }
     for (std::size_t i = 0; i < taken.size(); ++i) {
       const auto began_ns = run.phases().began_ns(static_cast<FaultPhase>(i));
       if (began_ns && taken[i] == 0) {
         begins[i] = moment();
         taken[i] = 1;
       } else if (began_ns && taken[i] == 1 && run.now_ns() - *began_ns > kLater_ns) {
-        later[i] = moment();
+        const Moment now = moment();
+        if ((now.tool_m - begins[i].tool_m).norm() < kWay_m) continue;
+        later[i] = now;
         taken[i] = 2;
       }
     }
   }
+}
+
+std::optional<Ground::WayOn> Ground::way_on(FaultPhase phase) const {
+  constexpr double kLeast = 1e-4;  // m or rad, more than a joint's noise
+  const Moment& from = begins[static_cast<std::size_t>(phase)];
+  const Moment& to = later[static_cast<std::size_t>(phase)];
+  std::optional<WayOn> best;
+  for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
+    const double up = 0.5 * (to.joints[i] - from.highest[i]);
+    const double down = 0.5 * (from.lowest[i] - to.joints[i]);
+    const WayOn way = up > down ? WayOn{i, true, up, to.joints[i] - up}
+                                : WayOn{i, false, down, to.joints[i] + down};
+    if (way.half > std::max(kLeast, best ? best->half : 0.0)) best = way;
+  }
+  return best;
 }
 
 double Ground::force_most_N() const {
@@ -69,15 +96,9 @@ DrivenRun::Altered DrivenRun::altered(const Ground& ground, const FaultKind& kin
   const Ground::Moment& from = ground.begins[static_cast<std::size_t>(phase)];
   const Ground::Moment& to = ground.later[static_cast<std::size_t>(phase)];
   if (kind.act == Act::kJointLimit) {
-    std::size_t most = 0;
-    for (std::size_t i = 0; i < world.cell.robot.joints.size(); ++i) {
-      if (std::abs(to.joints[i] - from.joints[i]) > std::abs(to.joints[most] - from.joints[most])) {
-        most = i;
-      }
-    }
-    Joint& joint = world.cell.robot.joints[most];
-    const double limit = 0.5 * (from.joints[most] + to.joints[most]);
-    (to.joints[most] > from.joints[most] ? joint.upper : joint.lower) = limit;
+    const auto way = ground.way_on(phase).value();
+    Joint& joint = world.cell.robot.joints[way.joint];
+    (way.up ? joint.upper : joint.lower) = way.limit;
   }
   if (kind.act == Act::kObstacle) {
     constexpr double kEdge_m = 0.05;
@@ -111,7 +132,7 @@ void DrivenRun::drive() {
     (void)run_.run_on_clock([this](std::int64_t) { return before_a_cycle(); });
   } else if (run_.prepare()) {
     bool more = true;
-    while (more && watch_.cycles() < kCyclesMost) {
+    while (more && run_.now_ns() < kMost_ns) {
       (void)before_a_cycle();
       if (kind_.act == Act::kKill && watch_.has_struck()) break;
       more = run_.cycle();

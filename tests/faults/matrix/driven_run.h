@@ -2,8 +2,10 @@
 // A whole run in which a fault of a kind strikes in a phase, driven cycle by cycle.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "executor/dry_run/dry_run.h"
@@ -33,14 +35,26 @@ struct Ground {
   struct Moment {
     JointVector joints{};
     Vector3 tool_m = Vector3::Zero();  ///< task frame, of the environment as it stands
+    JointVector lowest{};              ///< of the run until then
+    JointVector highest{};
   };
+  /// A joint that comes in a phase to where it never was, and half of how far.
+  struct WayOn {
+    std::size_t joint = 0;
+    bool up = false;
+    double half = 0.0;   ///< m or rad
+    double limit = 0.0;  ///< halfway
+  };
+  /// Of all such joints the one that comes furthest; unset: none does.
+  [[nodiscard]] std::optional<WayOn> way_on(sim::FaultPhase phase) const;
+
   Cell cell;
   std::map<std::uint8_t, DeviceFile> twins;
   Planned planned;
   executor::DryRun dry_run;
   JointVector start{};
   std::array<Moment, sim::kFaultPhases> begins{};
-  std::array<Moment, sim::kFaultPhases> later{};  ///< 0.4 s after that
+  std::array<Moment, sim::kFaultPhases> later{};  ///< 0.4 s after that, and a centimetre away
 };
 
 /// Where and when a fault strikes.

@@ -48,13 +48,14 @@ void judge_unnamed(Outcome& outcome, const DrivenRun& run, const FaultKind& kind
   const WholeRun::Result result = run.result();
   const EndReason wanted =
       phase == FaultPhase::kStopping ? EndReason::kStopRequested : EndReason::kPlanDone;
+  const sim::Truth held = run.watch().truth_held();
   outcome.text = "ridden out";
   if (result.ending.reason != wanted) {
     outcome.complaint = "ended otherwise: " + result.reason;
-  } else if (wanted == EndReason::kPlanDone && !result.truth.within_tolerance) {
-    outcome.complaint = format("done but wrong by %.2f mm", 1e3 * result.truth.error_norm_m);
+  } else if (wanted == EndReason::kPlanDone && !held.within_tolerance) {
+    outcome.complaint = format("done but wrong by %.2f mm", 1e3 * held.error_norm_m);
   }
-  const std::int64_t over = run.watch().off().value_or(run.watch().cycles());
+  const std::int64_t over = run.watch().over().value_or(run.watch().cycles());
   for (const FaultRow* row : kind.names) {
     const auto since = run.watch().since(*row);
     const bool due = since && over - *since > most_cycles(*row, ground.cell.robot);
@@ -71,17 +72,30 @@ void judge_end_state(Outcome& outcome, const DrivenRun& run, const FaultKind& ki
   // The servo goes where its encoder sends it until its brake holds.
   const double misread = kind.drive_moves_by_itself ? jump_of(ground.cell.robot) : 0.0;
   const std::string left = run.rest().complaints(misread);
-  if (!slips && !left.empty()) outcome.complaint += "; left as: " + left;
-  if (slips && !run.rest().off()) outcome.complaint += "; left as: " + left;
-  const double force_N = run.result().truth.contact_force_N_max;
+  const bool on_their_own = kind.master_is_lost && has_drives_without_reaction(ground.cell.robot);
+  outcome.stays_powered = on_their_own && !left.empty();
+  if (outcome.stays_powered) {
+    outcome.text += ", stands under power";
+    if (!run.rest().stands()) outcome.complaint += "; under power and in motion: " + left;
+  } else if (slips ? !run.rest().off() : !left.empty()) {
+    outcome.complaint += "; left as: " + left;
+  }
+  const double force_N = run.watch().truth_held().contact_force_N_max;
   // An arm that falls presses as it falls, and one that its encoder deceives before anyone knows.
   if (!slips && !kind.drive_moves_by_itself && force_N > ground.force_most_N()) {
     outcome.complaint += format("; pressed with %.0f N", force_N);
   }
 }
 
-bool impossible(const FaultKind& kind, FaultPhase phase) {
-  return kind.while_moving_only && phase != FaultPhase::kFree && phase != FaultPhase::kSliding;
+/// Why there is no such fault; empty: there is.
+std::string why_impossible(const FaultKind& kind, FaultPhase phase, const Ground& ground) {
+  if (!kind.impossible.empty()) return kind.impossible;
+  const bool moves = phase == FaultPhase::kFree || phase == FaultPhase::kSliding;
+  if (kind.while_moving_only && !moves) return "nothing moves towards it";
+  if (kind.act == Act::kJointLimit && !ground.way_on(phase)) {
+    return "no joint comes to where it was not before";
+  }
+  return "";
 }
 
 }  // namespace
@@ -89,9 +103,9 @@ bool impossible(const FaultKind& kind, FaultPhase phase) {
 Outcome run_cell(const Ground& ground, const FaultKind& kind, FaultPhase phase,
                  const executor::FaultMask& mask) {
   Outcome outcome;
-  if (impossible(kind, phase)) {
+  if (const std::string why = why_impossible(kind, phase, ground); !why.empty()) {
     outcome.verdict = Outcome::Verdict::kImpossible;
-    outcome.text = "-";
+    outcome.text = "impossible: " + why;
     return outcome;
   }
   DrivenRun run(ground, kind, {.phase = phase, .mask = mask});

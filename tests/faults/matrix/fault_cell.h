@@ -2,11 +2,9 @@
 // One cell of the fault matrix: a whole run in which a fault of a kind strikes in a phase, on a
 // robot, and what came of it by the executor's word and the virtual arm's truth.
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "executor/faults/fault_table.h"
 #include "sim/cell/faults/fault_phases.h"
@@ -17,10 +15,12 @@ namespace tenon::tests {
 
 struct Outcome {
   enum class Verdict { kRiddenOut, kStopped, kKilled, kImpossible };
+  static constexpr std::size_t kVerdicts = 4;
   Verdict verdict = Verdict::kRiddenOut;
   std::string text;       ///< for the printed matrix
   std::string complaint;  ///< what breaks the matrix's promise; empty: nothing
   const executor::FaultRow* named = nullptr;
+  bool stays_powered = false;  ///< at rest: its drives have no reaction to a lost master
 };
 
 /// @param mask of detectors that are off

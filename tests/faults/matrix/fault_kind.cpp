@@ -1,8 +1,12 @@
 #include "tests/faults/matrix/fault_kind.h"
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
 #include "shared/base/text.h"
+#include "shared/canopen/robot_drives.h"
+#include "shared/mit/robot_motors.h"
 
 namespace tenon::tests {
 namespace {
@@ -30,7 +34,7 @@ Names drifts() {
 
 /// As tenon-sim --fault brings it about.
 FaultKind spec(const char* name, const char* text, Names names) {
-  return {name, Act::kSpec, text, std::move(names), false, false};
+  return {name, Act::kSpec, text, std::move(names)};
 }
 
 std::vector<FaultKind> kinds_of_the_bus() {
@@ -40,31 +44,32 @@ std::vector<FaultKind> kinds_of_the_bus() {
   return {
       spec("a frame dropped", "drop:node=JOINT", {}),
       spec("frames dropped", "drop:node=JOINT,duration_s=100", missing),
-      spec("frames delayed", "delay:node=JOINT,duration_s=100,delay_s=0.0012,id=answers", missing),
+      spec("frames delayed", "delay:node=JOINT,duration_s=100,delay_s=LATE,id=answers", missing),
       // All frames twice would be more than the bus carries.
       spec("frames duplicated", "duplicate:node=JOINT,duration_s=100", {}),
       spec("frames short", "corrupt-length:node=SENSOR,duration_s=100,id=answers", stale),
-      spec("heartbeat lost", "drop:node=JOINT,duration_s=100,id=heartbeat",
+      spec("heartbeat lost", "drop:node=LIVELY,duration_s=100,id=heartbeat",
            {arm(ArmFaultKind::kHeartbeatLost)}),
       spec("queue full", "queue-full:node=127,duration_s=100", {arm(ArmFaultKind::kQueueFull)}),
       spec("bus-off", "bus-off:node=127", {arm(ArmFaultKind::kBusOff)}),
       spec("interface down", "interface-down", {arm(ArmFaultKind::kBusDown)}),
       spec("answers lost", "drop:node=JOINT,duration_s=100,id=answers", missing),
       spec("RPDOs lost", "drop:node=JOINT,duration_s=100,id=rpdo", behind),
-      {"another master", Act::kOtherMaster, "", {arm(ArmFaultKind::kOtherMaster)}, false, false},
+      {"another master", Act::kOtherMaster, "", {arm(ArmFaultKind::kOtherMaster)}},
   };
 }
 
 std::vector<FaultKind> kinds_of_devices() {
   const Names behind = stays_behind();
   const Names stale = {arm(ArmFaultKind::kSensorStale)};
+  // The arm tells by the force's frame, the executor by the whole wrench.
+  const Names ends = {fault_row(EndReason::kSensorSaturated), arm(ArmFaultKind::kSensorInvalid)};
   return {
       spec("node reset", "node-reset:node=JOINT", {arm(ArmFaultKind::kUnexpectedReset)}),
-      spec("emergency", "emergency:node=JOINT,code=0x3210", {arm(ArmFaultKind::kDriveFault)}),
+      spec("emergency", "emergency:node=JOINT,code=CODE", {arm(ArmFaultKind::kDriveFault)}),
       spec("force torn", "torn-force:duration_s=100", stale),
       spec("force stale", "stale-force:duration_s=100", stale),
-      spec("force saturated", "saturated-force:duration_s=100",
-           {fault_row(EndReason::kSensorSaturated)}),
+      spec("force saturated", "saturated-force:duration_s=100", ends),
       spec("force beyond its limit", "forged-force:force_N=80",
            {fault_row(EndReason::kForceFault)}),
       {"encoder jump",
@@ -82,45 +87,70 @@ std::vector<FaultKind> kinds_of_devices() {
 
 std::vector<FaultKind> kinds_of_the_executor() {
   return {
-      {"setpoints not finite",
-       Act::kNotFinite,
-       "",
-       {arm(ArmFaultKind::kSetpointNotFinite)},
-       false,
-       false},
-      {"SIGSTOP", Act::kPause, "", {arm(ArmFaultKind::kDriveFault)}, false, false},
-      {"SIGKILL", Act::kKill, "", {}, false, false},
+      {"setpoints not finite", Act::kNotFinite, "", {arm(ArmFaultKind::kSetpointNotFinite)}},
+      {"SIGSTOP", Act::kPause, "", {arm(ArmFaultKind::kDriveFault)}},
+      {"SIGKILL", Act::kKill, "", {}},
       {"late wake-ups",
        Act::kLate,
        "",
-       {fault_row(EndReason::kOverruns), fault_row(EndReason::kBlind)},
-       false,
-       false},
-      {"joint limit", Act::kJointLimit, "", {fault_row(EndReason::kJointLimit)}, true, false},
-      {"unexpected contact", Act::kObstacle, "", {fault_row(EndReason::kPlanFailed)}, true, false},
+       {fault_row(EndReason::kOverruns), fault_row(EndReason::kBlind)}},
+      {"joint limit", Act::kJointLimit, "", {fault_row(EndReason::kJointLimit)}, true},
+      {"unexpected contact", Act::kObstacle, "", {fault_row(EndReason::kPlanFailed)}, true},
   };
+}
+
+/// What is another fault, or none, where motors speak the MIT mode.
+void adapt_to_motors(FaultKind& kind) {
+  const std::string name = kind.name;
+  // It comes up without a word, and off.
+  if (name == "node reset") kind.names = {arm(ArmFaultKind::kDriveState)};
+  // A motor that is sent nothing answers nothing.
+  if (name == "RPDOs lost") kind.names = {arm(ArmFaultKind::kFeedbackMissing)};
+  if (name == "brake failed") kind.impossible = "its motors have no brakes";
 }
 
 }  // namespace
 
-std::vector<FaultKind> fault_kinds() {
+std::vector<FaultKind> fault_kinds(const Robot& robot) {
+  static const std::set<std::string> kMasterIsLost = {"SIGKILL", "SIGSTOP",        "queue full",
+                                                      "bus-off", "interface down", "RPDOs lost"};
   std::vector<FaultKind> all = kinds_of_the_bus();
   for (auto part : {kinds_of_devices(), kinds_of_the_executor()}) {
     for (FaultKind& kind : part) all.push_back(std::move(kind));
   }
+  for (FaultKind& kind : all) {
+    kind.master_is_lost = kMasterIsLost.contains(kind.name);
+    if (speaks_mit(robot)) adapt_to_motors(kind);
+  }
   return all;
+}
+
+bool has_drives_without_reaction(const Robot& robot) {
+  return !speaks_mit(robot) &&
+         std::any_of(robot.joints.begin(), robot.joints.end(), [](const Joint& joint) {
+           const DriveProfile& profile = canopen_drive(joint).profile;
+           return profile.object(DriveObject::kConnectionOption).presence == Presence::kAbsent;
+         });
 }
 
 double jump_of(const Robot& robot) { return 2.0 * robot.joints.front().following_error_max; }
 
 std::string spec_for(const FaultKind& kind, const Robot& robot) {
   const bool turns = robot.joints.front().kind == Joint::Kind::kRevolute;
+  const bool motors = speaks_mit(robot);
+  constexpr double kLate = 0.7;  // of a cycle: so long the executor waits for answers
+  const std::string joint = std::to_string(robot.joints.front().node);
+  const std::string sensor = std::to_string(robot.sensor.node);
   const std::pair<const char*, std::string> words[] = {
-      {"JOINT", std::to_string(robot.joints.front().node)},
-      {"SENSOR", std::to_string(robot.sensor.node)},
+      {"JOINT", joint},
+      {"SENSOR", sensor},
+      {"LIVELY", motors ? sensor : joint},
       // The gantry's z, the other arm's shoulder.
       {"VERTICAL", std::to_string(robot.joints[turns ? 1 : 2].node)},
       {"JUMP", format(turns ? "jump_rad=%g" : "jump_m=%g", jump_of(robot))},
+      {"LATE", format("%g", kLate * 1e-6 * robot.cycle_us)},
+      // A drive's supply; a motor's over-current.
+      {"CODE", motors ? "0xA" : "0x3210"},
   };
   std::string text = kind.spec;
   for (const auto& [word, value] : words) {

@@ -1,7 +1,7 @@
 #pragma once
-// The rows of the fault matrix: every kind of fault, how it is brought about, and by which rows of
-// the executor's table it may be named. What it comes to in which phase is not written down here:
-// that follows from the table's bounds.
+// The rows of a robot's fault matrix: every kind of fault, how it is brought about, and by which
+// rows of the executor's table it may be named. What it comes to in which phase is not written down
+// here: that follows from the table's bounds.
 
 #include <span>
 #include <string>
@@ -27,15 +27,24 @@ enum class Act {
 struct FaultKind {
   const char* name = "";
   Act act = Act::kSpec;
-  /// As for --fault, without at and time_s; JOINT, SENSOR, VERTICAL and JUMP stand for the cell's.
+  /// As for --fault, without at and time_s. JOINT, SENSOR, VERTICAL, LIVELY (whose heartbeat is
+  /// watched), JUMP, LATE (most of a cycle) and CODE (of an emergency) stand for the robot's.
   std::string spec;
   /// Which may name it; empty: it is ridden out.
   std::vector<const executor::FaultRow*> names;
   bool while_moving_only = false;      ///< there is none where nothing moves
   bool drive_moves_by_itself = false;  ///< the force is bounded by the drive alone
+  /// The master reaches a drive no more: it has to stop by itself.
+  bool master_is_lost = false;
+  /// Why such a robot cannot have it, in any phase; empty: it can.
+  std::string impossible{};
 };
 
-[[nodiscard]] std::vector<FaultKind> fault_kinds();
+[[nodiscard]] std::vector<FaultKind> fault_kinds(const Robot& robot);
+
+/// Nothing stops its drives when their master is gone, as is said at every start: they stay under
+/// power.
+[[nodiscard]] bool has_drives_without_reaction(const Robot& robot);
 
 /// By which an encoder that jumps misreads, m or rad: twice what its drive's following error
 /// allows.

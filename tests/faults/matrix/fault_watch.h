@@ -26,6 +26,7 @@ class FaultWatch final : public executor::CycleSink {
   FaultWatch(const Cell& cell, bool of_sensor, std::function<sim::Truth()> truth)
       : robot_(cell.robot),
         force_fault_N_(cell.force_fault_N),
+        falls_(!cell.robot.brakes),
         of_sensor_(of_sensor),
         truth_(std::move(truth)) {
     const double lags = 3.0 * robot_.response_lag_s / (1e-6 * robot_.cycle_us);
@@ -42,6 +43,7 @@ class FaultWatch final : public executor::CycleSink {
     ++cycles_;
     if (struck_ && !behind_ && behind(r)) behind_ = cycles_;
     if (struck_) look_at_the_truth();
+    if (falls_ && !let_go_) look_while_held(r);
     const bool on = r.arm_state == ArmState::kEnabled && r.request == ArmRequest::kEnabled;
     if (struck_ && on && !followed_) followed_ = cycles_;
     if (r.state == executor::State::kTaring && !taring_) taring_ = cycles_;
@@ -58,6 +60,7 @@ class FaultWatch final : public executor::CycleSink {
                        reason != executor::EndReason::kStopRequested &&
                        reason != executor::EndReason::kPlanDone;
     if (ended && !named_) named_ = cycles_;
+    if (r.state >= executor::State::kDisabling && !over_) over_ = cycles_;
     if (r.state == executor::State::kWatching && !off_) off_ = cycles_;
     if (r.state > executor::State::kTaring && r.state <= executor::State::kHolding && !tared_)
       tared_ = cycles_;
@@ -74,7 +77,8 @@ class FaultWatch final : public executor::CycleSink {
     // Later than the tare's, drift is felt as a force.
     if (reason == kTareDrift) return struck_ && taring_ >= struck_ ? taring_ : std::nullopt;
     if (row.arm_fault == ArmFaultKind::kDriveFault || row.arm_fault == ArmFaultKind::kDriveState) {
-      return left_;
+      const bool let_go = let_go_at_ && struck_ && *let_go_at_ >= *struck_;
+      return left_ || !let_go ? left_ : let_go_at_;
     }
     // What is there while the sensor is tared is no force.
     const bool forged = of_sensor_ && struck_ && tared_ && *tared_ <= *struck_;
@@ -86,6 +90,8 @@ class FaultWatch final : public executor::CycleSink {
   }
   [[nodiscard]] std::optional<std::int64_t> named() const { return named_; }
   [[nodiscard]] std::optional<std::int64_t> off() const { return off_; }
+  /// The run's end stands: no fault that comes later changes its name.
+  [[nodiscard]] std::optional<std::int64_t> over() const { return over_; }
   /// The greatest speed commanded to an enabled joint, of its own.
   [[nodiscard]] double fastest() const { return fastest_; }
   [[nodiscard]] bool has_struck() const { return struck_.has_value(); }
@@ -95,7 +101,20 @@ class FaultWatch final : public executor::CycleSink {
     return struck_ ? off_.value_or(cycles_) - *struck_ : 0;
   }
 
+  /// As it stands; of an arm that falls without power, before a motor of it was off.
+  [[nodiscard]] sim::Truth truth_held() const { return held_ ? *held_ : truth_(); }
+
  private:
+  void look_while_held(const executor::CycleRecord& r) {
+    const sim::Truth truth = truth_();
+    const bool on = std::all_of(truth.drives.begin(), truth.drives.end(),
+                                [](const sim::DriveTruth& drive) { return drive.state == "on"; });
+    were_on_ = were_on_ || on;
+    let_go_ = were_on_ && !on;
+    if (!let_go_) held_ = truth;
+    if (let_go_ && asked_on_) let_go_at_ = cycles_;
+    asked_on_ = r.request == ArmRequest::kEnabled;
+  }
   void look_at_the_truth() {
     if (left_ && pressed_) return;
     const sim::Truth truth = truth_();
@@ -103,7 +122,7 @@ class FaultWatch final : public executor::CycleSink {
     const bool left =
         std::any_of(truth.drives.begin(), truth.drives.end(), [](const sim::DriveTruth& drive) {
           return drive.state != "operation enabled" && drive.state != "switched on" &&
-                 drive.state != "ready to switch on";
+                 drive.state != "ready to switch on" && drive.state != "on" && drive.state != "off";
         });
     if (left && !left_) left_ = cycles_;
     if (truth.contact_force_N_max > force_fault_N_ && !pressed_) pressed_ = cycles_;
@@ -121,6 +140,12 @@ class FaultWatch final : public executor::CycleSink {
 
   const Robot& robot_;
   double force_fault_N_;
+  bool falls_;
+  bool were_on_ = false;                   ///< all motors of an arm that falls
+  std::optional<std::int64_t> let_go_at_;  ///< and nobody had asked it to
+  bool asked_on_ = false;                  ///< in the last cycle
+  bool let_go_ = false;                    ///< then one of them was off
+  std::optional<sim::Truth> held_;
   bool was_on_ = false;
   double fastest_ = 0.0;
   bool of_sensor_;
@@ -136,6 +161,7 @@ class FaultWatch final : public executor::CycleSink {
   std::optional<std::int64_t> tared_;
   std::optional<std::int64_t> followed_;
   std::optional<std::int64_t> named_;
+  std::optional<std::int64_t> over_;
   std::optional<std::int64_t> off_;
 };
 
