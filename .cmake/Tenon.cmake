@@ -83,7 +83,7 @@ set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identificati
 set(TENON_MAY_USE_tenon-monitor  executor_telemetry shared_config LCM::lcm)
 set(TENON_MAY_USE_tenon-sim      sim_cell sim_listener hw_can shared_eds shared_config)
 set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)
-set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 hw_check shared_eds shared_config)
+set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 hw_mit hw_check shared_eds shared_config)
 
 # Everything under tests/ may use any library, and never a main.
 set(TENON_MAY_USE_tests ${TENON_LIBRARIES} test_support Eigen3::Eigen yaml-cpp ODE::ODE LCM::lcm

@@ -18,6 +18,7 @@
 #include "hw/canopen/sdo_client.h"
 #include "hw/cia402/drive_state.h"
 #include "hw/main_can_check.h"
+#include "hw/main_can_motors.h"
 #include "shared/base/error.h"
 #include "shared/canopen/constants.h"
 #include "shared/config/command_line.h"
@@ -182,6 +183,7 @@ int store(CanBus& bus, std::uint8_t node) {
 
 struct Arguments {
   std::string robot;
+  std::string motors;
   std::vector<std::string> eds;
   std::string uri;
   std::uint32_t bitrate_bps = 1'000'000;
@@ -209,12 +211,17 @@ int run(int argc, char** argv) {
   app.add_option("--can", arguments.uri,
                  "socketcan:IFACE, slcan:/dev/TTY or slcan://HOST:PORT; "
                  "needed by all but check");
-  app.add_option("--bitrate", arguments.bitrate_bps,
-                 "bit/s; set on slcan adapters, checked on SocketCAN")
-      ->capture_default_str();
+  const auto* bitrate =
+      app.add_option("--bitrate", arguments.bitrate_bps,
+                     "bit/s; set on slcan adapters, checked on SocketCAN; default of --robot: its")
+          ->capture_default_str();
   app.require_subcommand(1);
-  const auto* scan_command = app.add_subcommand("scan", "ask all 127 nodes who they are");
-  const auto* state_command = app.add_subcommand("state", "listen for heartbeats for a second");
+  auto* scan_command = app.add_subcommand("scan", "ask all 127 nodes who they are");
+  auto* state_command = app.add_subcommand("state", "listen for heartbeats for a second");
+  for (auto* command : {scan_command, state_command}) {
+    command->add_option("--robot", arguments.motors,
+                        "robot.yaml of motors in MIT mode: ask these instead");
+  }
   auto* store_command =
       app.add_subcommand("store", "let a node keep its settings without power (1010h)");
   store_command->add_option("NODE", arguments.node)->required()->check(CLI::Range(1, 127));
@@ -244,7 +251,11 @@ int run(int argc, char** argv) {
   const std::vector<std::uint8_t> bytes =
       write_command->parsed() ? canopen::object_bytes(arguments.type, arguments.value)
                               : std::vector<std::uint8_t>{};
+  std::optional<Robot> motors;
+  if (!arguments.motors.empty()) motors = load_motors(arguments.motors);
+  if (motors && bitrate->count() == 0) arguments.bitrate_bps = motors->bitrate_bps;
   const std::unique_ptr<CanBus> bus = open_bus(arguments.uri, arguments.bitrate_bps);
+  if (motors) return look_at_motors(*bus, *motors, state_command->parsed());
   if (scan_command->parsed()) return scan(*bus);
   if (store_command->parsed()) return store(*bus, static_cast<std::uint8_t>(arguments.node));
   if (state_command->parsed()) return state(*bus);

@@ -135,7 +135,13 @@ std::string error_code(std::uint32_t code) {
 }
 
 std::string drive_fault(const ArmFault& fault) {
-  if (fault.object >> 8 == tenon::canopen::kErrorCode) {
+  const bool of_emergency = fault.object >> 8 == tenon::canopen::kErrorCode;
+  if (of_emergency && fault.code == tenon::canopen::kEmergencyHeartbeat) {
+    return "drive fault " + error_code(fault.code) +
+           ": it has not heard this program for its timeout; check what else this computer runs, "
+           "late cycles, and the bus";
+  }
+  if (of_emergency) {
     return "drive fault " + error_code(fault.code) + "; see the drive's manual for the code";
   }
   return format(

@@ -15,12 +15,6 @@ namespace {
 
 namespace wire = tenon::mit;
 
-std::string value_text(std::uint8_t number, std::uint32_t value) {
-  if (is_float(number)) return format("%g", double{std::bit_cast<float>(value)});
-  const bool id = number == wire::kMasterId || number == wire::kMotorId;
-  return format(id ? "0x%03X" : "%u", value);
-}
-
 std::string register_text(std::uint8_t number) {
   return register_name(number) + format(" (register %u)", unsigned{number});
 }
@@ -39,10 +33,10 @@ std::string configuration(const ArmFault& fault, const Joint& joint) {
   bool writable = false;
   for (const RegisterSetting& setting : motor_settings(joint)) {
     if (setting.number != number) continue;
-    wanted = value_text(number, setting.value);
+    wanted = register_value(number, setting.value);
     writable = setting.writable;
   }
-  return "holds " + register_text(number) + " = " + value_text(number, fault.code) + " where " +
+  return "holds " + register_text(number) + " = " + register_value(number, fault.code) + " where " +
          wanted +
          (writable ? " was written; check the motor's firmware"
                    : " is in the robot file; set one like the other, and save it in the "
@@ -60,6 +54,12 @@ std::string motor_fault(const ArmFault& fault, const Joint& joint) {
 }
 
 }  // namespace
+
+std::string register_value(std::uint8_t number, std::uint32_t value) {
+  if (is_float(number)) return format("%g", double{std::bit_cast<float>(value)});
+  const bool id = number == wire::kMasterId || number == wire::kMotorId;
+  return format(id ? "0x%03X" : "%u", value);
+}
 
 const char* state_text(std::uint32_t state) {
   switch (state) {
@@ -115,7 +115,7 @@ std::string describe_settings(const Robot& robot) {
             format("0x%03X\n", mit_motor(joint).feedback_id);
     for (const RegisterSetting& setting : motor_settings(joint)) {
       text += "  " + register_text(setting.number) + " = " +
-              value_text(setting.number, setting.value) +
+              register_value(setting.number, setting.value) +
               (setting.writable ? ", written where it is another\n" : ", must be so already\n");
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 // Lines for people about motors in MIT mode. Not real-time (builds strings), pure.
 
+#include <cstdint>
 #include <string>
 
 #include "shared/cell/robot.h"
@@ -14,6 +15,9 @@ namespace tenon::hw::mit {
 
 /// "over-current", "off"; for a number that has no name "error".
 [[nodiscard]] const char* state_text(std::uint32_t state);
+
+/// "0x011", "3.2": as people read it.
+[[nodiscard]] std::string register_value(std::uint8_t number, std::uint32_t value);
 
 /// What bring-up does to each motor, register by register. Several lines.
 [[nodiscard]] std::string describe_settings(const Robot& robot);

@@ -78,6 +78,10 @@ CanFrame read_register_frame(std::uint8_t node, std::uint8_t number) {
   return register_frame(node, wire::kReadRegister, number, 0);
 }
 
+CanFrame request_feedback_frame(std::uint8_t node) {
+  return register_frame(node, wire::kRequestFeedback, 0, 0);
+}
+
 CanFrame write_register_frame(std::uint8_t node, std::uint8_t number, std::uint32_t value) {
   return register_frame(node, wire::kWriteRegister, number, value);
 }
@@ -89,7 +93,9 @@ std::optional<MotorFeedback> decode_feedback(std::uint8_t node, const MitMotor& 
   return MotorFeedback{byte_of(frame.data[0], 4),
                        value_of(byte(1) << 8U | byte(2), motor.position_max_rad, kFull16),
                        value_of(byte(3) << 4U | byte(4) >> 4U, motor.velocity_max_radps, kFull12),
-                       value_of((byte(4) & 0x0FU) << 8U | byte(5), motor.torque_max_Nm, kFull12)};
+                       value_of((byte(4) & 0x0FU) << 8U | byte(5), motor.torque_max_Nm, kFull12),
+                       frame.data[6],
+                       frame.data[7]};
 }
 
 std::optional<RegisterAnswer> decode_register(std::uint8_t node, const MitMotor& motor,

@@ -34,6 +34,8 @@ struct MotorFeedback {
   double position_rad = 0.0;
   double velocity_radps = 0.0;
   double torque_Nm = 0.0;
+  std::uint8_t board_degC = 0;
+  std::uint8_t coil_degC = 0;
 };
 
 struct RegisterAnswer {
@@ -47,6 +49,8 @@ struct RegisterAnswer {
 /// @param what tenon::mit::kEnable, kDisable, kClearError
 [[nodiscard]] CanFrame special_frame(std::uint8_t node, std::uint8_t what);
 [[nodiscard]] CanFrame read_register_frame(std::uint8_t node, std::uint8_t number);
+/// Asks for a feedback, and for nothing else.
+[[nodiscard]] CanFrame request_feedback_frame(std::uint8_t node);
 [[nodiscard]] CanFrame write_register_frame(std::uint8_t node, std::uint8_t number,
                                             std::uint32_t value);
 

@@ -4,8 +4,9 @@
 //
 // Frames, ranges and registers were read in descriptions of the protocol by others than its maker,
 // which agree. Unverified in the maker's own manual: that a motor which is off answers a disable
-// frame as it answers a command, that a lost master switches it off (kErrorLostMaster), and that
-// registers may be written while it is off without being stored.
+// frame as it answers a command, that a lost master switches it off (kErrorLostMaster), that
+// registers may be written while it is off without being stored, and that it gives a feedback where
+// it is asked for one (kRequestFeedback).
 
 #include <array>
 #include <cstdint>
@@ -30,6 +31,7 @@ inline constexpr double kDampingMax = 5.0;      ///< Nm s/rad, from 0
 inline constexpr std::uint8_t kReadRegister = 0x33;
 inline constexpr std::uint8_t kWriteRegister = 0x55;
 inline constexpr std::uint8_t kSaveRegisters = 0xAA;
+inline constexpr std::uint8_t kRequestFeedback = 0xCC;  ///< answered as a command is
 
 // Registers.
 inline constexpr std::uint8_t kMasterId = 7;      ///< MST_ID: of its feedback

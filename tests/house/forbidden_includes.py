@@ -72,8 +72,8 @@ MAY_INCLUDE = {
                   "sim_listener", "hw_can"},
     "tenon-evaluate": HW_ARM | {"shared_mit", "shared_eds", "shared_config", "shared_system", "sim_evaluation_chain",
                                 "sim_evaluation", "sim_cell", "hw_arm", "hw_load"},
-    "tenon-can": HW_ARM | {"shared_eds", "shared_config", "shared_system", "hw_can", "hw_arm", "hw_load",
-                           "hw_check"},
+    "tenon-can": HW_ARM | {"shared_mit", "shared_eds", "shared_config", "shared_system", "hw_can", "hw_arm", "hw_mit",
+                           "hw_load", "hw_check"},
 }
 
 

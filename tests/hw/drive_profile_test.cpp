@@ -279,6 +279,19 @@ TEST(DriveProfile, TheFaultThatAWarningBecomesHasItsCode) {
             "node 3 (z): drive fault 0x4210 (device too hot); see the drive's manual for the code");
 }
 
+// A pause of the whole program, say: no manual of a drive would tell.
+TEST(DriveProfile, ADriveThatHeardNoMasterSendsPeopleToTheirComputer) {
+  GantryOnBus gantry;
+  ASSERT_TRUE(gantry.prepare_and_enable());
+  gantry.nodes[2]->send(0x083, {0x30, 0x81, 0x11, 0, 0, 0, 0, 0});
+  gantry.nodes[2]->statusword = 0x0218;
+  gantry.cycle(ArmRequest::kEnabled, gantry.feedback.position);
+  EXPECT_EQ(describe(gantry.arm.fault(), gantry.robot),
+            "node 3 (z): drive fault 0x8130 (heartbeat of the master lost): it has not heard this "
+            "program for its timeout; check what else this computer runs, late cycles, and the "
+            "bus");
+}
+
 // A drive that has long been warm loses its encoder: the statusword tells of a fault, and only the
 // next emergency of which.
 TEST(DriveProfile, AFaultBesideAStandingWarningHasItsOwnCode) {

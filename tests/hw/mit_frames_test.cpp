@@ -57,6 +57,10 @@ TEST(MitFrames, SpecialFrames) {
   EXPECT_EQ(special_frame(2, tenon::mit::kClearError), special(0xFB));
 }
 
+TEST(MitFrames, AFeedbackIsAskedForByItself) {
+  EXPECT_EQ(request_feedback_frame(5), frame_of(0x7FF, {0x05, 0x00, 0xCC, 0, 0, 0, 0, 0}));
+}
+
 TEST(MitFrames, RegistersAreAskedAndWritten) {
   EXPECT_EQ(read_register_frame(1, 7), frame_of(0x7FF, {1, 0, 0x33, 0x07, 0, 0, 0, 0}));
   EXPECT_EQ(write_register_frame(2, 10, 1), frame_of(0x7FF, {2, 0, 0x55, 0x0A, 1, 0, 0, 0}));

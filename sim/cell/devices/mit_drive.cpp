@@ -98,6 +98,8 @@ void MitDrive::on_register(const CanFrame& frame) {
   const auto whose = static_cast<std::uint32_t>(frame.data[1] << 8U | frame.data[0]);
   const auto found = registers_.find(frame.data[3]);
   const bool write = frame.data[2] == mit::kWriteRegister;
+  const bool whole = frame.data[2] == mit::kRequestFeedback;
+  if (whole && whose == registers_.at(mit::kMotorId)) return answer();
   if (whose != registers_.at(mit::kMotorId) || found == registers_.end()) return;
   if (!write && frame.data[2] != mit::kReadRegister) return;
   if (write && state_ != mit::kStateOn) {
