@@ -15,6 +15,7 @@
 #include "planner/check/task_check.h"
 #include "planner/main_plan_new_task.h"
 #include "planner/planner.h"
+#include "planner/report/check_page.h"
 #include "planner/report/summary.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
@@ -37,6 +38,7 @@ struct Arguments {
   std::string method = to_string(PlanMethod::kMha);
   std::string output;
   std::string json;
+  std::string report;
   std::size_t threads = all_cores();
   std::size_t draws = planner::kDrawsMin;
   std::optional<double> time_limit_s;
@@ -102,8 +104,12 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
   app.add_option("-o,--output", a.output,
                  "Plan file to write, or task file; required but for --check");
-  app.add_flag("--check", a.check,
-               "Plan nothing: say what of the task is understood, and what is wrong with it");
+  auto* check =
+      app.add_flag("--check", a.check,
+                   "Plan nothing: say what of the task is understood, and what is wrong with it");
+  app.add_option("--report", a.report,
+                 "With --check: HTML file with pictures of scene, starts, particles and goal")
+      ->needs(check);
   app.add_option("--json", a.json, "File for the statistics, - for standard output");
 }
 
@@ -140,6 +146,7 @@ int check(const Arguments& a, const Task& task) {
       planner::check_task(task, starts, [](const Task& part) -> std::unique_ptr<Rollout> {
         return std::make_unique<sim::OdeRollout>(part);
       });
+  if (!a.report.empty()) write_file(a.report, planner::check_page(a.task, task, checked));
   std::fputs(planner::check_text(a.task, task, checked).c_str(), stdout);
   return checked.refused() ? 2 : 0;
 }
@@ -156,6 +163,7 @@ int run(const Arguments& a) {
   if (a.check) {
     write_nothing_more("--check", "--output", a.output);
     write_nothing_more("--check", "--json", a.json);
+    check_apart({{"--report", a.report}}, {{"the task", a.task}, {"--cell", a.cell}});
     if (!a.cell.empty()) task = planner::fit_to_cell(task, load_cell(a.cell)).task;
     return check(a, task);
   }

@@ -2,52 +2,44 @@
 #include <string>
 
 #include "planner/check/task_check.h"
+#include "planner/check/understood.h"
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
 
 namespace tenon::planner {
 namespace {
 
-constexpr std::size_t kListedShapes = 12;
+constexpr std::size_t kListedParts = 12;
 
 std::string mm(const Vector3& v) {
   return format("(%.4g, %.4g, %.4g)", 1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z());
 }
 
-std::string size_text(const Shape& shape) {
-  return shape.name + format(" %.4g x %.4g x %.4g", 1e3 * shape.size_m.x(), 1e3 * shape.size_m.y(),
-                             1e3 * shape.size_m.z());
-}
-
-std::string shapes_text(const std::vector<Shape>& shapes, bool places) {
+std::string shapes_text(const std::vector<Shape>& shapes) {
+  const std::vector<Part> parts = parts_of(shapes);
   std::string text;
-  for (std::size_t i = 0; i < shapes.size() && i < kListedShapes; ++i) {
-    text += (i == 0 ? "" : "\n          ") + size_text(shapes[i]) +
-            (places ? " at " + mm(shapes[i].pose.position_m) : "");
+  for (std::size_t i = 0; i < parts.size() && i < kListedParts; ++i) {
+    const Part& part = parts[i];
+    text += (i == 0 ? "" : "\n          ") + part.name + " " + size_text(part) + " at " +
+            mm(part.middle_m);
   }
-  if (shapes.size() > kListedShapes) {
-    text += format("\n          and %zu more", shapes.size() - kListedShapes);
+  if (parts.size() > kListedParts) {
+    text += format("\n          and %zu more", parts.size() - kListedParts);
   }
   return text;
 }
 
-std::string spread_text(const Start& start, const Task& task) {
+std::string touches_text(const Task& task, const Start& start, const StartCheck& checked) {
   std::string text;
-  for (int axis = 0; axis < 6; ++axis) {
-    if (start.sigma[axis] <= 0.0) continue;
-    text +=
-        format("%s%s +-%.3g %s", text.empty() ? "" : ", ", axis_name(axis),
-               shown(task.particle_sigmas * start.sigma[axis], axis), axis < 3 ? "mm" : "degrees");
-  }
-  return text.empty() ? "nothing uncertain" : text;
-}
-
-std::string touches_text(const StartCheck& start) {
-  std::string text;
-  for (const Touch& touch : start.touches) {
-    text += format("\n          touches along %s%s: ", touch.sign > 0 ? "+" : "-",
-                   axis_name(touch.axis)) +
-            touch.shape + ", at " + mm(touch.tool.position_m);
+  for (const Direction& direction : directions_of(task, start, checked)) {
+    text += format("\n          touches along %s%s: ", direction.sign > 0 ? "+" : "-",
+                   axis_name(direction.axis));
+    if (direction.touch == nullptr) {
+      text += "nothing that the whole spread meets";
+      continue;
+    }
+    text += direction.touch->shape + ", at " + mm(direction.touch->tool.position_m);
+    if (!direction.touch->in_legs) text += ", which no straight legs lead to";
   }
   return text;
 }
@@ -55,6 +47,8 @@ std::string touches_text(const StartCheck& start) {
 std::string room_text(const std::optional<double>& way_m) {
   return way_m ? format("%.3g", 1e3 * *way_m) : "open";
 }
+
+}  // namespace
 
 const char* weight_text(Finding::Weight weight) {
   switch (weight) {
@@ -68,8 +62,6 @@ const char* weight_text(Finding::Weight weight) {
   return "";
 }
 
-}  // namespace
-
 std::string check_text(const std::string& file, const Task& task, const TaskCheck& check) {
   std::string text;
   if (check.findings.empty()) text += file + ": nothing stands against planning it\n";
@@ -78,8 +70,8 @@ std::string check_text(const std::string& file, const Task& task, const TaskChec
   }
   text += "\nWhat is understood, in mm:\n";
   text += "task      " + task.name + ", along " + axis_list(task.coordinates) + "\n";
-  text += "held      " + shapes_text(task.held, true) + " in the tool frame\n";
-  text += "around    " + shapes_text(task.environment, true) + "\n";
+  text += "held      " + shapes_text(task.held) + " in the tool frame\n";
+  text += "around    " + shapes_text(task.environment) + "\n";
   text += "goal      " + mm(task.goal.position_m) +
           format(", to within %.3g", 1e3 * task.goal_tolerance_m) +
           (task.inserted ? ", inserted" : "") + "\n";
@@ -90,10 +82,14 @@ std::string check_text(const std::string& file, const Task& task, const TaskChec
   for (const StartCheck& checked : check.starts) {
     for (const Start& start : task.starts) {
       if (start.name != checked.name) continue;
-      text += "start     '" + start.name + "' " + mm(start.pose.position_m) +
-              format(", %zu particles %g standard deviations out: ", checked.particles,
+      text += "start     '" + start.name + "' " + mm(start.pose.position_m);
+      if (!checked.free) {
+        text += ", in collision\n";
+        continue;
+      }
+      text += format(", %zu particles %g standard deviations out: ", checked.particles.size(),
                      task.particle_sigmas) +
-              spread_text(start, task) + touches_text(checked) + "\n";
+              spread_text(start, task) + touches_text(task, start, checked) + "\n";
     }
   }
   return text;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "shared/ports/collision_depth.h"
+#include "shared/task/ring.h"
 
 namespace tenon::planner {
 namespace {
@@ -68,7 +69,7 @@ std::optional<Overlap> Probe::deepest(const Pose& tool) {
   std::optional<Overlap> deepest;
   for (const Pair& pair : pairs_) {
     if (!pair.rollout->in_collision(tool)) continue;
-    Overlap least{pair.held->name, pair.environment->name, extent_m_, 0, 1};
+    Overlap least{piece_of(pair.held->name), piece_of(pair.environment->name), extent_m_, 0, 1};
     for (int way = 0; way < 6; ++way) {
       const int axis = way / 2;
       const int sign = way % 2 == 0 ? 1 : -1;
@@ -93,7 +94,7 @@ std::string Probe::met_at(const Pose& tool) {
   make_pairs();
   const auto met = std::find_if(pairs_.begin(), pairs_.end(),
                                 [&](const Pair& pair) { return pair.rollout->in_collision(tool); });
-  return met == pairs_.end() ? std::string() : met->environment->name;
+  return met == pairs_.end() ? std::string() : piece_of(met->environment->name);
 }
 
 std::optional<double> Probe::way_to_touch(const Pose& from, int axis, int sign, double reach_m) {

@@ -15,7 +15,8 @@ namespace tenon::planner {
 
 using MakeRollout = std::function<std::unique_ptr<Rollout>(const Task& task)>;
 
-/// A held and an environment's shape that stand in one another.
+/// A held and an environment's shape that stand in one another. Pieces of a ring or a mesh have the
+/// name of the whole, here and below.
 struct Overlap {
   std::string held;
   std::string environment;

@@ -66,13 +66,19 @@ class Checker {
 
   void start(const Start& start) {
     const std::string what = "start '" + start.name + "' at " + at(start.pose.position_m);
+    StartCheck& checked = check_.starts.emplace_back();
+    checked.name = start.name;
     if (const auto overlap = probe_.deepest(start.pose)) {
+      checked.free = false;
       add(Weight::kRefused, what + " is in collision: " + overlap_text(*overlap, task_) +
                                 ": move the start or the environment");
       return;
     }
     const Belief belief = cross_polytope(task_, start);
-    const bool free = particles(start, belief, what);
+    for (const Particle& particle : belief.particles) {
+      checked.particles.push_back({particle.tool(), probe_.free(particle.tool())});
+    }
+    const bool free = all_free(start, checked.particles, what);
     const bool arrived =
         std::all_of(belief.particles.begin(), belief.particles.end(),
                     [&](const Particle& p) { return within_tolerance(task_, p.tool()); });
@@ -81,9 +87,6 @@ class Checker {
                               " is already within the goal's tolerance, wherever in its spread "
                               "the part is: nothing is left to plan");
     }
-    StartCheck& checked = check_.starts.emplace_back();
-    checked.name = start.name;
-    checked.particles = belief.particles.size();
     if (!free) return;
     checked.touches = touchable(task_, start, probe_);
     untouched(start, checked.touches);
@@ -109,10 +112,10 @@ class Checker {
   }
 
   /// Whether all of them stand free. The first that does not is told of.
-  bool particles(const Start& start, const Belief& belief, const std::string& what) {
-    for (const Particle& particle : belief.particles) {
-      const Pose tool = particle.tool();
-      if (probe_.free(tool)) continue;
+  bool all_free(const Start& start, const std::vector<CheckedParticle>& particles,
+                const std::string& what) {
+    for (const auto& [tool, free] : particles) {
+      if (free) continue;
       const Vector6 off = displacement_between(start.pose, tool);
       int axis = 0;
       off.cwiseAbs().maxCoeff(&axis);

@@ -23,11 +23,18 @@ struct Finding {
   std::string text;  ///< one line: what, where, how much, what to do
 };
 
+/// Where the tool may begin.
+struct CheckedParticle {
+  Pose tool;
+  bool free = true;
+};
+
 /// A start and its surroundings.
 struct StartCheck {
   std::string name;
-  std::size_t particles = 0;
-  std::vector<Touch> touches;
+  bool free = true;                        ///< where it is nominally
+  std::vector<CheckedParticle> particles;  ///< none where it is not free
+  std::vector<Touch> touches;              ///< none where a particle is not free
 };
 
 /// How far the part can go from the goal until it touches, m; none: farther than a push gets.
@@ -48,6 +55,9 @@ struct TaskCheck {
 /// @param starts of the task, each looked at
 [[nodiscard]] TaskCheck check_task(const Task& task, const std::vector<Start>& starts,
                                    const MakeRollout& make);
+
+/// "wrong: " and so on.
+[[nodiscard]] const char* weight_text(Finding::Weight weight);
 
 /// The check's lines. The first is the first finding, or says that there is none.
 /// @param file as the user gave it

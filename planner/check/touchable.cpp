@@ -114,14 +114,37 @@ class Sweeps {
     const auto known = std::find_if(touches_.begin(), touches_.end(), [&](const Touch& other) {
       return other.axis == axis_ && other.sign == sign;
     });
-    if (known != touches_.end() && known->from_start_m <= touch.from_start_m) return;
+    const bool nearer = known == touches_.end() || touch.from_start_m < known->from_start_m;
+    if (!nearer && known->in_legs) return;
     if (!whole_spread_touches(touch)) return;
+    touch.in_legs = legs_lead_to(moved(touch.tool, axis_, -sign * kSamePlace_m));
+    if (known != touches_.end() && (known->in_legs == touch.in_legs ? !nearer : known->in_legs)) {
+      return;
+    }
     touch.shape = probe_.met_at(moved(touch.tool, axis_, sign * kInto_m));
     if (known == touches_.end()) {
       touches_.push_back(touch);
     } else {
       *known = touch;
     }
+  }
+
+  /// In any order of the axes.
+  [[nodiscard]] bool legs_lead_to(const Pose& to) {
+    const Vector3 way_m = to.position_m - start_.pose.position_m;
+    std::array<int, 3> order = {0, 1, 2};
+    do {
+      Pose at = start_.pose;
+      const auto leg = [&](int axis) {
+        const int sign = way_m[axis] < 0.0 ? -1 : 1;
+        const double leg_m = std::abs(way_m[axis]);
+        if (leg_m > 0.0 && probe_.way_to_touch(at, axis, sign, leg_m)) return false;
+        at = moved(at, axis, way_m[axis]);
+        return true;
+      };
+      if (std::all_of(order.begin(), order.end(), leg)) return true;
+    } while (std::next_permutation(order.begin(), order.end()));
+    return false;
   }
 
   [[nodiscard]] bool whole_spread_touches(const Touch& touch) {

@@ -17,10 +17,14 @@ struct Touch {
   std::string shape;          ///< of the environment
   Pose tool;                  ///< where it touches
   double from_start_m = 0.0;  ///< that far from the start
+  /// Whether legs along the coordinates, each of them once, lead there from the start. Else only a
+  /// way around something does, or none.
+  bool in_legs = false;
 };
 
-/// The touch nearest to a start in each direction along an uncertain translation: at most one for
-/// each axis and sign, none where nothing is in reach. Looked for on lines along the axis through
+/// The touch nearest to a start in each direction along an uncertain translation, of those that
+/// legs lead to where there are any: at most one for each axis and sign, none where nothing is in
+/// reach. Looked for on lines along the axis through
 /// the start, through the goal, and through the middle of each shape, as far as a move at contact
 /// speed gets within its time limit. It counts where the corners of the start's spread across it
 /// touch at places that lie within `attractor_ratio` of the spread along it; along axes that have

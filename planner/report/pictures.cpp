@@ -32,17 +32,18 @@ std::vector<Vector3> tools_m(const ReportData& data) {
   return tools_m;
 }
 
-/// Filled where the plane through the goal cuts it; in outline what stands elsewhere.
-std::string environment(const ReportData& data, const Canvas& canvas, const drawing::View& view) {
-  double depth_m = data.plan.goal.position_m[view.along];
+}  // namespace
+
+std::string surroundings(const Task& task, const Canvas& canvas, const drawing::View& view) {
+  double depth_m = task.goal.position_m[view.along];
   if (view.along == 2) depth_m += kAboveFloor_m;
   std::string elsewhere;
   std::string cut;
-  for (const Shape& shape : data.task.environment) {
+  for (const Shape& shape : task.environment) {
     const std::string section = canvas.section(shape, depth_m, "fill='#8a8172'");
     cut += section;
     if (!section.empty()) continue;
-    const bool floor = view.along == 2 && is_floor(shape, data.plan);
+    const bool floor = view.along == 2 && is_floor(shape, task.goal);
     elsewhere += canvas.shadow(shape, Pose{},
                                floor ? "fill='#f3efe6'" : "fill='#8a8172' fill-opacity='.12'");
   }
@@ -55,16 +56,17 @@ std::string part_at(const Task& task, const Canvas& canvas, const Pose& pose, co
   return svg;
 }
 
-}  // namespace
+std::string part_at_goal(const Task& task, const Canvas& canvas, const Pose& goal) {
+  return part_at(task, canvas, goal, "fill='#009e73' fill-opacity='.2' stroke='#009e73'");
+}
 
 std::string overview(const ReportData& data, const drawing::View& view) {
   const Canvas canvas(view, data.task, tools_m(data));
   std::string svg =
-      canvas.open("The plan, " + std::string(view.title)) + environment(data, canvas, view);
+      canvas.open("The plan, " + std::string(view.title)) + surroundings(data.task, canvas, view);
   svg += part_at(data.task, canvas, data.plan.start,
                  "fill='#0072b2' fill-opacity='.12' stroke='#0072b2'");
-  svg += part_at(data.task, canvas, data.plan.goal,
-                 "fill='#009e73' fill-opacity='.2' stroke='#009e73'");
+  svg += part_at_goal(data.task, canvas, data.plan.goal);
   for (const Draw& draw : data.validation.draws) {
     svg += canvas.polyline(path_of(draw.chain), 1.3, "stroke='#000' stroke-opacity='.06'");
     svg += canvas.dot(draw.chain.end().position_m, 1.5, "fill='#000' fill-opacity='.35'");

@@ -9,6 +9,18 @@
 
 namespace tenon::planner {
 
+/// The environment: filled where the plane through the goal cuts it, in outline what stands
+/// elsewhere.
+[[nodiscard]] std::string surroundings(const Task& task, const Canvas& canvas,
+                                       const drawing::View& view);
+
+/// The held part with its tool at a pose. @param style SVG attributes
+[[nodiscard]] std::string part_at(const Task& task, const Canvas& canvas, const Pose& pose,
+                                  const char* style);
+
+/// The part where it belongs, as every picture shows it.
+[[nodiscard]] std::string part_at_goal(const Task& task, const Canvas& canvas, const Pose& goal);
+
 /// The environment, the part at start and goal, and the paths of all particles and draws.
 [[nodiscard]] std::string overview(const ReportData& data, const drawing::View& view);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Pages that move: the scripts and styles of page/ around one block of data. Pure; any thread.
+// Pages with the scripts and styles of page/: those that move, around one block of data, and those
+// that stand still. Pure; any thread.
 
 #include <string>
 
@@ -15,5 +16,13 @@ struct LivePage {
 
 /// One document that loads nothing: its security policy forbids it to.
 [[nodiscard]] std::string live_document(const LivePage& page);
+
+/// The same without data and scripts: words, tables and pictures that stand still.
+struct StillPage {
+  std::string title;
+  std::string heading;
+  std::string body;
+};
+[[nodiscard]] std::string still_document(const StillPage& page);
 
 }  // namespace tenon::drawing

@@ -7,6 +7,7 @@
 
 #include "shared/base/text.h"
 #include "shared/drawing/surface.h"
+#include "shared/task/ring.h"
 
 namespace tenon::drawing {
 namespace {
@@ -57,11 +58,6 @@ std::string shapes_json(const std::vector<Shape>& shapes, std::size_t triangles_
 }
 
 }  // namespace
-
-std::string piece_of(const std::string& shape_name) {
-  const std::size_t bracket = shape_name.find('[');
-  return bracket == 0 ? shape_name : shape_name.substr(0, bracket);
-}
 
 std::string pose_json(const Pose& pose) {
   const Eigen::Quaterniond& q = pose.orientation;

@@ -8,9 +8,6 @@
 
 namespace tenon::drawing {
 
-/// "hole" of "hole[12]": pieces of one ring or mesh have its name and a number each.
-[[nodiscard]] std::string piece_of(const std::string& shape_name);
-
 /// One JSON object: held part and environment as triangles, meshes decimated so that all of them
 /// together fit a page.
 [[nodiscard]] std::string scene_json(const Task& task);

@@ -23,4 +23,9 @@ std::vector<Shape> boxes_of(const Ring& ring) {
   return boxes;
 }
 
+std::string piece_of(const std::string& shape_name) {
+  const std::size_t bracket = shape_name.find('[');
+  return bracket == 0 ? shape_name : shape_name.substr(0, bracket);
+}
+
 }  // namespace tenon

@@ -27,4 +27,7 @@ struct Ring {
 /// that a round peg has in the hole: a clearance of 1 mm is 1.02 mm towards a corner.
 [[nodiscard]] std::vector<Shape> boxes_of(const Ring& ring);
 
+/// "hole" of "hole[12]": what people call a shape whose pieces have its name and a number each.
+[[nodiscard]] std::string piece_of(const std::string& shape_name);
+
 }  // namespace tenon

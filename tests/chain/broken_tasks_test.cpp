@@ -88,5 +88,44 @@ TEST(BrokenTasks, NothingStandsAgainstAnyTaskThatShips) {
   }
 }
 
+TEST(BrokenTasks, ThePageOfACheckHoldsAllThatItsLinesSay) {
+  const YAML::Node document = YAML::LoadFile(in_tree("tests/chain/broken_tasks.yaml"));
+  const ScratchFolder folder;
+  const std::string file = folder.put("task.yaml", document["task"].as<std::string>());
+  const std::string page = (folder.path() / "task.html").string();
+  const Ended ended = run(folder, {executable("tenon-plan"), "--check", file, "--report", page});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const std::string html = folder.get("task.html");
+  for (const char* part : {"peg", "left", "right", "front", "back", "bottom", "Start above"}) {
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  const Ended over_itself =
+      run(folder, {executable("tenon-plan"), "--check", file, "--report", file});
+  EXPECT_EQ(over_itself.status, 2);
+  EXPECT_EQ(folder.get("task.yaml"), document["task"].as<std::string>());
+  const Ended alone = run(folder, {executable("tenon-plan"), file, "--report", page});
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.err.find("--report requires --check"), std::string::npos) << alone.err;
+}
+
+TEST(BrokenTasks, NoPushThatIsSaidToTouchGoesThroughAWall) {
+  const ScratchFolder folder;
+  const Ended ended = run(folder, {executable("tenon-plan"), "--check",
+                                   in_tree("planner/tasks/box_on_table_2d.yaml"), "--start", "1"});
+  EXPECT_EQ(ended.status, 0);
+  // Outside of the wall wall_nx, at x = -600, is nearer, but in the plane no move leads there.
+  EXPECT_NE(ended.out.find("touches along +x: wall_px, at (450, -200, 2)"), std::string::npos);
+  EXPECT_NE(ended.out.find("touches along -x: wall_nx, at (-450, -200, 2)"), std::string::npos);
+}
+
+TEST(BrokenTasks, ARingIsOnePart) {
+  const ScratchFolder folder;
+  const Ended ended = run(
+      folder, {executable("tenon-plan"), "--check", in_tree("planner/tasks/peg_in_hole_3d.yaml")});
+  EXPECT_NE(ended.out.find("hole of 16 pieces"), std::string::npos) << ended.out;
+  EXPECT_EQ(ended.out.find("hole["), std::string::npos) << ended.out;
+}
+
 }  // namespace
 }  // namespace tenon::tests
