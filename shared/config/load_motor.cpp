@@ -55,7 +55,9 @@ void read_motor(const Value& value, std::set<std::int64_t>& nodes, Joint& joint)
   joint.acceleration_max = map.number("acceleration_max_radps2", positive_to(1e4));
   joint.rated_effort = map.number("rated_effort_Nm", positive_to(motor.torque_max_Nm));
   joint.following_error_max = map.number("following_error_max_rad", positive_to(1.0));
+  // What the URDF allows beyond it, no command can say.
   joint.effort_max = std::min(joint.effort_max, motor.torque_max_Nm);
+  joint.speed_max = std::min(joint.speed_max, motor.velocity_max_radps);
   joint.stiffness = motor.stiffness_Nmprad;
   joint.drive = motor;
 }

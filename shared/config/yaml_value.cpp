@@ -37,11 +37,12 @@ std::string joined(const std::vector<std::string_view>& words) {
   return text;
 }
 
-template <typename Number>
-std::optional<Number> parsed(const std::string& text) {
+/// @param base of an integer
+template <typename Number, typename... Base>
+std::optional<Number> parsed(const std::string& text, Base... base) {
   Number number{};
   const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  const auto [rest, error] = std::from_chars(text.data(), end, number, base...);
   if (error != std::errc{} || rest != end) return std::nullopt;
   return number;
 }
@@ -107,7 +108,10 @@ double Value::number(const Bounds& bounds) const {
 
 std::int64_t Value::integer(std::int64_t low, std::int64_t high) const {
   const std::string range = "[" + std::to_string(low) + ", " + std::to_string(high) + "]";
-  const std::optional<std::int64_t> number = parsed<std::int64_t>(scalar("an integer in " + range));
+  const std::string& text = scalar("an integer in " + range);
+  const std::optional<std::int64_t> number = text.starts_with("0x")
+                                                 ? parsed<std::int64_t>(text.substr(2), 16)
+                                                 : parsed<std::int64_t>(text);
   if (!number) refuse_value("an integer in " + range);
   if (*number < low || *number > high) refuse_value("in " + range);
   return *number;

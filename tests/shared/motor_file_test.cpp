@@ -15,9 +15,8 @@
 namespace tenon {
 namespace {
 
-/// mit6's robot or cell file with the first `piece` another: how it is refused, without the folder.
-std::string refused(const std::string& which, const std::string& piece,
-                    const std::string& instead) {
+/// mit6's robot or cell file with the first `piece` another.
+Cell altered(const std::string& which, const std::string& piece, const std::string& instead) {
   const tests::ScratchFolder folder;
   namespace fs = std::filesystem;
   fs::create_directories(folder.path() / "robots");
@@ -29,7 +28,13 @@ std::string refused(const std::string& which, const std::string& piece,
   EXPECT_NE(at, std::string::npos) << piece;
   text.replace(at, piece.size(), instead);
   write_file(folder.path() / which, text);
-  return tests::refusal([&] { (void)load_cell(folder.path() / "cells/mit6.yaml"); });
+  return load_cell(folder.path() / "cells/mit6.yaml");
+}
+
+/// How that is refused, without the folder.
+std::string refused(const std::string& which, const std::string& piece,
+                    const std::string& instead) {
+  return tests::refusal([&] { (void)altered(which, piece, instead); });
 }
 
 std::string of_robot(const std::string& piece, const std::string& instead) {
@@ -56,6 +61,23 @@ TEST(MotorFile, SaysWhatTheMotorIsAndThatNothingHoldsIt) {
   EXPECT_NEAR(robot.joints[3].counts_per_unit, 10239.84375, 1e-9);
   EXPECT_NEAR(robot.joints[3].zero_counts, 32767.5, 1e-9);
   EXPECT_FALSE(speaks_mit(load_robot(tests::in_tree("hw/robots/csp6/robot.yaml"))));
+}
+
+// The URDF allows 1.26 rad/s and 40 Nm.
+TEST(MotorFile, AMotorsRangesBoundWhatTheJointIsAllowed) {
+  const auto first_with = [](const std::string& piece, const std::string& instead) {
+    return altered("robots/mit6/robot.yaml", piece, instead).robot.joints.front();
+  };
+  EXPECT_EQ(first_with("velocity_max_radps: 5.0", "velocity_max_radps: 5.0").speed_max, 1.26);
+  EXPECT_EQ(first_with("velocity_max_radps: 5.0", "velocity_max_radps: 0.5").speed_max, 0.5);
+  EXPECT_EQ(first_with("torque_max_Nm: 40.0", "torque_max_Nm: 30").effort_max, 30.0);
+}
+
+TEST(MotorFile, AnIdentifierMayStandInHexadecimalAsTheMakersToolHasIt) {
+  EXPECT_EQ(of_robot("feedback_id: 19", "feedback_id: 0x13"), "accepted");
+  expect_told(of_robot("feedback_id: 19", "feedback_id: 0x7FF"), "[1, 2046]");
+  expect_told(of_robot("feedback_id: 19", "feedback_id: 0x"), "an integer");
+  expect_told(of_robot("feedback_id: 19", "feedback_id: 0x1G"), "an integer");
 }
 
 TEST(MotorFile, EveryValueOutOfItsRangeIsRefusedByFileAndKey) {
