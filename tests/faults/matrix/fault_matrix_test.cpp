@@ -32,6 +32,7 @@ struct Subject {
   const char* cell = "";
   const char* twin = "";  ///< what its drives answer like, a file of tests/twins; empty: the book
   const char* plan_of = "";  ///< the cell that its plan was made for; empty: its own
+  std::size_t first = 0;     ///< kind of its sample
 };
 
 /// A cell of a robot's matrix, run once for all tests.
@@ -177,23 +178,25 @@ TEST_P(FaultMatrix, SomeCellsLoseTheirNamesWithTheirDetectorsAndAreMissedWithout
   EXPECT_GT(missed, 4);
 }
 
-// Every kind in one phase: what a commit sees of the robots whose whole matrix a release sees.
+// Every third kind in one phase, of three robots another third each: what a commit sees of those
+// whose whole matrix a release sees.
 class FaultSample : public FaultMatrix {};
 
-TEST_P(FaultSample, EveryFaultInSomePhaseIsRiddenOutOrStoppedByName) {
+TEST_P(FaultSample, FaultsInSomePhaseAreRiddenOutOrStoppedByName) {
   Count count;
-  std::size_t next = 0;
-  for (const FaultKind& kind : kinds) {
-    count.add(outcome_in(kind, kPhases[next++ % std::size(kPhases)]));
+  for (std::size_t i = GetParam().first; i < kinds.size(); i += 3) {
+    count.add(outcome_in(kinds[i], kPhases[i % std::size(kPhases)]));
   }
   count.print(robot());
-  EXPECT_GT(count.of(Outcome::Verdict::kStopped), 15);
+  EXPECT_GE(count.of(Outcome::Verdict::kStopped), 7);
 }
 
 std::string subject_name(const ::testing::TestParamInfo<Subject>& info) { return info.param.cell; }
 
 constexpr Subject kOtherArms[] = {
-    {.cell = "mit6"}, {.cell = "lwa4p", .twin = "lwa4p"}, {"epos4", "epos4", "gantry3"}};
+    {.cell = "mit6"},
+    {.cell = "lwa4p", .twin = "lwa4p", .first = 1},
+    {.cell = "epos4", .twin = "epos4", .plan_of = "gantry3", .first = 2}};
 
 INSTANTIATE_TEST_SUITE_P(Tree, FaultMatrix, ::testing::Values(Subject{.cell = "gantry3"}),
                          subject_name);
