@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <lcm/lcm-cpp.hpp>
@@ -173,6 +174,21 @@ TEST_F(KeysProcess, APausedMoveThatNobodyCanLetGoOnIsStopped) {
   EXPECT_EQ(keyed->json("result.json").at("reason"), "stop_requested") << keyed->exec().err();
   EXPECT_EQ(keyed->json("result.json").at("disable_confirmed"), true);
   EXPECT_NE(keyed->exec().err().find("standard input has ended"), std::string::npos);
+}
+
+TEST_F(KeysProcess, ATerminalThatClosesInAPauseStopsTheMove) {
+  int status = 0;
+  do {
+    KeyedRun* run = begin_moving();
+    ASSERT_NE(run, nullptr);
+    run->type("p\n");
+    if (run->says("pausing") && run->let_pass(100)) run->exec().send(SIGHUP);
+    status = run->exec().wait();
+  } while (status == 1 && attempts.again(keyed->json("result.json")));
+  EXPECT_EQ(status, 1);
+  EXPECT_EQ(keyed->json("result.json").at("reason"), "stop_requested") << keyed->exec().err();
+  EXPECT_EQ(keyed->json("result.json").at("disable_confirmed"), true);
+  EXPECT_EQ(keyed->exec().err().find("going on"), std::string::npos) << keyed->exec().err();
 }
 
 }  // namespace
