@@ -44,6 +44,7 @@ struct Arguments {
   std::optional<double> time_limit_s;
   std::optional<std::uint64_t> move_limit;
   double improve_s = 0.0;
+  bool exact_search = false;
   bool verbose = false;
   bool check = false;
   NewTaskArguments new_task;
@@ -101,6 +102,9 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--draws", a.draws, "Random starts of the validation")
       ->check(CLI::Range(planner::kDrawsMin, planner::kDrawsMax))
       ->capture_default_str();
+  app.add_flag("--exact-search", a.exact_search,
+               "Search with exact distances from meshes too: several times as slow. Plans are proven "
+               "with exact ones in any case");
   app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
   app.add_option("-o,--output", a.output,
                  "Plan file to write, or task file; required but for --check");
@@ -196,6 +200,8 @@ int run(const Arguments& a) {
   }
   const Start& start = chosen_start(task, a.start);
   const sim::OdeRollout rollout(task);
+  const sim::OdeRollout sampled(task, sim::MeshDistances::kSampled);
+  if (!a.exact_search) options.search_physics = &sampled;
 
   const std::int64_t began_ns = monotonic_now_ns();
   const auto now_s = [&] { return 1e-9 * static_cast<double>(monotonic_now_ns() - began_ns); };

@@ -59,13 +59,19 @@ class Planning {
         now_s_(now_s ? now_s : [] { return 0.0; }),
         began_s_(now_s_()),
         pool_(rollout, options.threads),
-        succ_(pool_, search_move(task, start, assumptions_), task.rollout_step_us, edges_of(task)),
-        long_succ_(pool_, long_move(task, search_move(task, start, assumptions_)),
+        search_pool_(options.search_physics ? *options.search_physics : rollout, options.threads),
+        succ_(search_pool_, search_move(task, start, assumptions_), task.rollout_step_us,
+              edges_of(task)),
+        long_succ_(search_pool_, long_move(task, search_move(task, start, assumptions_)),
                    task.rollout_step_us, edges_of(task)),
         judge_(task, start, {options.method, assumptions_, options.draws}, pool_, now_s_),
         told_s_(began_s_) {
     report_.method = options.method;
-    if (options.progress) pool_.after_each_move([this] { tell_if_silent(); });
+    if (options.progress) {
+      for (RolloutPool* pool : {&pool_, &search_pool_}) {
+        pool->after_each_move([this] { tell_if_silent(); });
+      }
+    }
   }
 
   /// Guides, and then in turn: search a path, judge it, learn from what refuted it.
@@ -247,7 +253,8 @@ class Planning {
   CellAssumptions assumptions_;
   ClockSeconds now_s_;
   double began_s_;
-  RolloutPool pool_;
+  RolloutPool pool_;  ///< of the truth
+  RolloutPool search_pool_;
   SuccessorEngine succ_;
   SuccessorEngine long_succ_;
   PathJudge judge_;

@@ -29,6 +29,9 @@ struct PlannerOptions {
   /// A baseline plans and certifies its single particle alone. Its plan runs at contact speed
   /// throughout, checks no envelope, and is validated as any other but never refused for it.
   PlanMethod method = PlanMethod::kMha;
+  /// Of the same task: what is searched on. It may be fast and wrong, since whatever is written is
+  /// certified and judged by the true physics alone. Null: the true one.
+  const Rollout* search_physics = nullptr;
   std::size_t threads = 1;  ///< >= 1; the plan does not depend on it
   /// What the cell is like that will execute the plan, see fit_to_cell(). Unset: its contact
   /// stiffness is the task's, and its latency at most 10 ms.
@@ -53,7 +56,7 @@ struct PlannerOptions {
 /// Plans from one of the task's starts. Takes seconds to minutes, and as many threads as the
 /// options say. Results depend on task, start and options, not on the number of threads; where the
 /// time limit strikes depends on the clock.
-/// @param rollout physics of the same task; cloned for each thread
+/// @param rollout true physics of the same task; cloned for each thread
 /// @param now_s for the task's time limit (time_limit_s) and the times of the report. Without one
 /// there is no limit but expansions_max, rounds_max and moves_max, and all times are 0
 /// @return the status says whether there is a plan; no plan is no error

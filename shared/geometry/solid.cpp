@@ -44,7 +44,8 @@ Solid::Solid(TriangleMesh mesh)
       size_m_(box_around(mesh).sizes()),
       mesh_(moved(std::move(mesh), -centre_m_)),
       tree_(mesh_),
-      cells_(size_m_) {
+      cells_(size_m_),
+      grid_(size_m_) {
   find_normals();
 }
 
@@ -138,6 +139,18 @@ Solid::Place Solid::place_at(const Vector3& point_m, const NearestOnTriangle& ne
 
 Solid::Place Solid::place(const Vector3& point_m, std::uint32_t guess) const {
   return place_at(point_m, cells_.nearest(tree_, point_m, guess));
+}
+
+Solid::Place Solid::sampled_place(const Vector3& point_m, std::uint32_t guess) const {
+  // Where walls on both sides are as near, the lattice knows of no way outwards.
+  constexpr double kSteepMin = 0.05;
+  const auto sample =
+      grid_.at(point_m, [&](const Vector3& node_m) { return place(node_m, guess).distance_m; });
+  if (!sample) return place(point_m, guess);
+  const double steep = sample->gradient.norm();
+  if (steep < kSteepMin) return place(point_m, guess);
+  const Vector3 outwards = sample->gradient / steep;
+  return {sample->distance_m, outwards, point_m - sample->distance_m * outwards, guess};
 }
 
 }  // namespace tenon

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "shared/geometry/distance_grid.h"
 #include "shared/geometry/nearest_cells.h"
 #include "shared/geometry/triangle_mesh.h"
 #include "shared/geometry/triangle_tree.h"
@@ -34,6 +35,9 @@ class Solid {
   /// (Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal").
   /// @param guess a triangle that is probably near: it only saves time
   [[nodiscard]] Place place(const Vector3& point_m, std::uint32_t guess = 0) const;
+  /// The same from a lattice (DistanceGrid), which is many times as fast: exact along flat walls,
+  /// rounded within a lattice cell of edges. The nearest point follows from distance and gradient.
+  [[nodiscard]] Place sampled_place(const Vector3& point_m, std::uint32_t guess = 0) const;
 
   struct Edge {
     std::uint32_t from = 0;  ///< corners of the mesh
@@ -57,6 +61,7 @@ class Solid {
   TriangleMesh mesh_;
   TriangleTree tree_;
   NearestCells cells_;
+  DistanceGrid grid_;
   std::vector<Vector3> face_normals_;
   std::vector<std::array<Vector3, 3>> edge_normals_;
   std::vector<Vector3> corner_normals_;

@@ -23,10 +23,10 @@ double deepest_m(std::span<const dContactGeom> points) {
 }  // namespace
 
 Scene::Scene(const std::vector<Shape>& held, const std::vector<Shape>& environment,
-             const Pose& X_WT)
+             const Pose& X_WT, MeshDistances distances)
     : X_WT_(X_WT) {
-  for (const Shape& shape : held) held_.emplace_back(shape);
-  for (const Shape& shape : environment) environment_.emplace_back(shape).place(X_WT);
+  for (const Shape& shape : held) held_.emplace_back(shape, distances);
+  for (const Shape& shape : environment) environment_.emplace_back(shape, distances).place(X_WT);
   for (std::size_t h = 0; h < held.size(); ++h) {
     for (std::size_t e = 0; e < environment.size(); ++e) {
       Watched& watched = watched_.emplace_back();

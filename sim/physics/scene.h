@@ -28,7 +28,7 @@ class Scene {
  public:
   /// @param X_WT where the environment's task frame stands in the world
   Scene(const std::vector<Shape>& held, const std::vector<Shape>& environment,
-        const Pose& X_WT = {});
+        const Pose& X_WT = {}, MeshDistances distances = MeshDistances::kExact);
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 

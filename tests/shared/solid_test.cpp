@@ -103,6 +103,42 @@ TEST(Solid, AGuessChangesNoBit) {
   }
 }
 
+TEST(Solid, SampledPlacesAreThoseOfTheSurfaceButForItsEdges) {
+  const Vector3 size_m(0.04, 0.04, 0.04);
+  const Solid solid(box_mesh(size_m));
+  Random random(5);
+  double flat_most_m = 0.0;
+  double most_m = 0.0;
+  constexpr double kSpacing_m = 0.04 / 256.0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Vector3 point_m = drawn_in(random, 1.4 * size_m);
+    const Solid::Place exact = solid.place(point_m);
+    const Solid::Place sampled = solid.sampled_place(point_m);
+    const double off_m = std::abs(sampled.distance_m - exact.distance_m);
+    most_m = std::max(most_m, off_m);
+    EXPECT_NEAR(sampled.outwards.norm(), 1.0, 1e-12);
+    // Amid a face and not near another: two cells from where that changes.
+    const Vector3 off_axes_m = point_m.cwiseAbs() - 0.5 * size_m;
+    Eigen::Index face = 0;
+    const double out_m = off_axes_m.maxCoeff(&face);
+    const double next_m = std::max(off_axes_m[(face + 1) % 3], off_axes_m[(face + 2) % 3]);
+    if (next_m < std::min(out_m, 0.0) - 2.0 * kSpacing_m) {
+      flat_most_m = std::max(flat_most_m, off_m);
+      EXPECT_GT(sampled.outwards.dot(exact.outwards), 1.0 - 1e-9);
+    }
+  }
+  EXPECT_LT(flat_most_m, 1e-8);  // a float's, at these sizes
+  EXPECT_LT(most_m, 0.6 * kSpacing_m);
+  EXPECT_GT(most_m, 0.05 * kSpacing_m);
+}
+
+TEST(Solid, BeyondItsLatticeAPlaceIsExact) {
+  const Solid solid(box_mesh({0.01, 0.02, 0.03}));
+  const Vector3 far_m(0.5, -0.2, 0.1);
+  EXPECT_EQ(solid.sampled_place(far_m).distance_m, solid.place(far_m).distance_m);
+  EXPECT_EQ(solid.sampled_place(far_m).nearest_m, solid.place(far_m).nearest_m);
+}
+
 TEST(NearestCells, WhatACellRemembersIsWhatTheTreeFinds) {
   // Each facet of the round is as near to its axis as any other: more than a cell remembers.
   const Solid solid(extruded(tests::round_profile(0.01, 100), 0.03));

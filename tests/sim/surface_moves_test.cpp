@@ -6,29 +6,13 @@
 #include <algorithm>
 
 #include "shared/base/random.h"
-#include "shared/geometry/solid.h"
 #include "sim/physics/rollout/compliant_tool.h"
 #include "sim/physics/rollout/ode_rollout.h"
 #include "sim/physics/scene.h"
-#include "tests/support/example_parts.h"
+#include "tests/sim/keyed_peg.h"
 
 namespace tenon::sim {
 namespace {
-
-Task keyed_peg() {
-  const auto shape = [](const char* name, const std::string& file) {
-    const auto solid = std::make_shared<const Solid>(tests::example_parts().at(file));
-    return Shape{name,
-                 Shape::Kind::kSolid,
-                 solid->size_m(),
-                 {solid->centre_m(), Eigen::Quaterniond::Identity()},
-                 solid};
-  };
-  Task task;
-  task.held = {shape("peg", "keyed_peg.stl")};
-  task.environment = {shape("socket", "keyed_socket.stl")};
-  return task;
-}
 
 struct Seen {
   int contacts = 0;

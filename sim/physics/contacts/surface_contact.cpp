@@ -7,9 +7,9 @@ namespace tenon::sim {
 namespace {
 
 // What is farther away is not looked at one by one.
-constexpr double kNear_m = 1e-3;
+constexpr double kNear_m = 1e-4;
 // A ball that may come near within this is looked at anew together with the others.
-constexpr double kSoon_m = 0.5e-3;
+constexpr double kSoon_m = 0.5e-4;
 // Looked at anew so much earlier than need be, so that rounding decides nothing.
 constexpr double kEarly_m = 1e-9;
 

@@ -86,8 +86,10 @@ class LateView {
 };
 
 struct OdeRollout::Physics {
-  explicit Physics(const Task& task)
-      : scene(task.held, task.environment), tool(world, task.compliance) {
+  Physics(const Task& task, MeshDistances distances)
+      : scene(task.held, task.environment, {}, distances),
+        sampled(distances == MeshDistances::kSampled),
+        tool(world, task.compliance) {
     scene.attach(tool.body());
   }
 
@@ -99,7 +101,13 @@ struct OdeRollout::Physics {
     tool.place(particle.pose, resting_force_N(particle, move));
     scene.place_environment(particle.environment);
     scene.set_oversize(particle.physics.oversize_m);
-    scene.placed();
+    // What is known of exact distances goes on to hold. Sampled ones may rise faster than the way:
+    // nothing that was seen before may have a part in what a move does.
+    if (sampled) {
+      scene.moved_anywhere();
+    } else {
+      scene.placed();
+    }
     wrench.setZero();
   }
 
@@ -160,6 +168,7 @@ struct OdeRollout::Physics {
 
   OdeWorld world;
   Scene scene;
+  bool sampled;
   CompliantTool tool;
   LockedContacts locked;
   ContactLaw law;
@@ -168,7 +177,8 @@ struct OdeRollout::Physics {
   Vector6 wrench = Vector6::Zero();
 };
 
-OdeRollout::OdeRollout(const Task& task) : task_(task), physics_(std::make_unique<Physics>(task)) {}
+OdeRollout::OdeRollout(const Task& task, MeshDistances distances)
+    : task_(task), distances_(distances), physics_(std::make_unique<Physics>(task, distances)) {}
 
 OdeRollout::~OdeRollout() = default;
 
@@ -214,6 +224,8 @@ bool OdeRollout::in_collision(const Pose& tool_pose) {
   return physics_->scene.overlap_m() > kCollisionDepth_m;
 }
 
-std::unique_ptr<Rollout> OdeRollout::clone() const { return std::make_unique<OdeRollout>(task_); }
+std::unique_ptr<Rollout> OdeRollout::clone() const {
+  return std::make_unique<OdeRollout>(task_, distances_);
+}
 
 }  // namespace tenon::sim

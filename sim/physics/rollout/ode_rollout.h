@@ -5,13 +5,16 @@
 
 #include "shared/ports/rollout.h"
 #include "shared/task/task.h"
+#include "sim/physics/surfaces/mesh_distances.h"
 
 namespace tenon::sim {
 
 /// The compliant tool of a task among its environment. Owns one ODE world; one thread at a time.
 class OdeRollout final : public Rollout {
  public:
-  explicit OdeRollout(const Task& task);
+  /// @param distances exact is the truth; sampled is for searching, between meshes, and is no
+  /// proof of anything
+  explicit OdeRollout(const Task& task, MeshDistances distances = MeshDistances::kExact);
   ~OdeRollout() override;
 
   [[nodiscard]] RolloutResult simulate(const Particle& particle, const MoveParameters& move,
@@ -23,6 +26,7 @@ class OdeRollout final : public Rollout {
  private:
   struct Physics;
   Task task_;
+  MeshDistances distances_;
   std::unique_ptr<Physics> physics_;
 };
 

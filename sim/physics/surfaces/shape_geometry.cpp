@@ -29,7 +29,8 @@ Vector3 axis_of(const dReal* rotation, int axis) {
 
 }  // namespace
 
-ShapeGeometry::ShapeGeometry(const Shape& shape) : shape_(shape), geometry_(make_geometry(shape)) {}
+ShapeGeometry::ShapeGeometry(const Shape& shape, MeshDistances distances)
+    : shape_(shape), distances_(distances), geometry_(make_geometry(shape)) {}
 
 ShapeGeometry::~ShapeGeometry() { dGeomDestroy(geometry_); }
 
@@ -64,7 +65,7 @@ void ShapeGeometry::set_oversize(double oversize_m) {
 }
 
 const Surface& ShapeGeometry::surface() {
-  if (!surface_) surface_ = surface_of(shape_);
+  if (!surface_) surface_ = surface_of(shape_, distances_);
   return *surface_;
 }
 

@@ -19,7 +19,7 @@ namespace tenon::sim {
 /// Owns the geometry. A shape either stands in the world or hangs on a body.
 class ShapeGeometry {
  public:
-  explicit ShapeGeometry(const Shape& shape);
+  explicit ShapeGeometry(const Shape& shape, MeshDistances distances = MeshDistances::kExact);
   ShapeGeometry(const ShapeGeometry&) = delete;
   ShapeGeometry& operator=(const ShapeGeometry&) = delete;
   ~ShapeGeometry();
@@ -65,6 +65,7 @@ class ShapeGeometry {
 
   Shape shape_;
   double oversize_m_ = 0.0;
+  MeshDistances distances_;
   dGeomID geometry_;
   std::unique_ptr<const Surface> surface_;
 };

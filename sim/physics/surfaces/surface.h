@@ -9,6 +9,7 @@
 
 #include "shared/math/pose.h"
 #include "shared/task/task.h"
+#include "sim/physics/surfaces/mesh_distances.h"
 
 namespace tenon::sim {
 
@@ -73,6 +74,7 @@ class Surface {
 };
 
 /// Of a shape as drawn, in the frame of its centre.
-[[nodiscard]] std::unique_ptr<const Surface> surface_of(const Shape& shape);
+[[nodiscard]] std::unique_ptr<const Surface> surface_of(const Shape& shape,
+                                                        MeshDistances distances);
 
 }  // namespace tenon::sim

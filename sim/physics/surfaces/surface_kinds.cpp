@@ -107,7 +107,8 @@ class CylinderSurface final : public Surface {
 
 class SolidSurface final : public Surface {
  public:
-  explicit SolidSurface(std::shared_ptr<const Solid> solid) : solid_(std::move(solid)) {
+  SolidSurface(std::shared_ptr<const Solid> solid, MeshDistances distances)
+      : solid_(std::move(solid)), sampled_(distances == MeshDistances::kSampled) {
     std::vector<Edge> edges;
     const std::vector<Vector3>& points_m = solid_->mesh().points_m;
     for (const Solid::Edge& edge : solid_->convex_edges()) {
@@ -117,24 +118,26 @@ class SolidSurface final : public Surface {
   }
 
   [[nodiscard]] Place place(const Vector3& point_m, std::uint32_t guess) const override {
-    const Solid::Place found = solid_->place(point_m, guess);
+    const Solid::Place found =
+        sampled_ ? solid_->sampled_place(point_m, guess) : solid_->place(point_m, guess);
     return {found.distance_m, found.outwards, found.nearest_m, found.triangle};
   }
 
  private:
   std::shared_ptr<const Solid> solid_;
+  bool sampled_;
 };
 
 }  // namespace
 
-std::unique_ptr<const Surface> surface_of(const Shape& shape) {
+std::unique_ptr<const Surface> surface_of(const Shape& shape, MeshDistances distances) {
   switch (shape.kind) {
     case Shape::Kind::kBox:
       return std::make_unique<BoxSurface>(shape.size_m);
     case Shape::Kind::kCylinder:
       return std::make_unique<CylinderSurface>(shape.size_m);
     case Shape::Kind::kSolid:
-      return std::make_unique<SolidSurface>(shape.solid);
+      return std::make_unique<SolidSurface>(shape.solid, distances);
   }
   assert(false);
   return nullptr;
