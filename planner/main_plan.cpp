@@ -102,9 +102,10 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--draws", a.draws, "Random starts of the validation")
       ->check(CLI::Range(planner::kDrawsMin, planner::kDrawsMax))
       ->capture_default_str();
-  app.add_flag("--exact-search", a.exact_search,
-               "Search with exact distances from meshes too: several times as slow. Plans are proven "
-               "with exact ones in any case");
+  app.add_flag(
+      "--exact-search", a.exact_search,
+      "Search with exact distances from meshes too: several times as slow. Plans are proven "
+      "with exact ones in any case");
   app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
   app.add_option("-o,--output", a.output,
                  "Plan file to write, or task file; required but for --check");
@@ -162,6 +163,11 @@ void write_nothing_more(const char* what, const char* option, const std::string&
       format("%s: %s plans nothing and would write nothing there; leave it out", option, what));
 }
 
+double checked_time_limit_s(double time_limit_s) {
+  if (time_limit_s > 0.0 && time_limit_s <= 86400.0) return time_limit_s;
+  throw InputError(format("--time-limit = %g, must be in (0, 86400] s", time_limit_s));
+}
+
 int run(const Arguments& a) {
   Task task = load_task(a.task);
   if (a.check) {
@@ -172,12 +178,7 @@ int run(const Arguments& a) {
     return check(a, task);
   }
   if (a.output.empty()) throw InputError("--output is required; see --help");
-  if (a.time_limit_s) {
-    if (!(*a.time_limit_s > 0.0 && *a.time_limit_s <= 86400.0)) {
-      throw InputError(format("--time-limit = %g, must be in (0, 86400] s", *a.time_limit_s));
-    }
-    task.time_limit_s = *a.time_limit_s;
-  }
+  if (a.time_limit_s) task.time_limit_s = checked_time_limit_s(*a.time_limit_s);
   check_apart({{"--output", a.output}, {"--json", a.json}},
               {{"the task", a.task}, {"--cell", a.cell}});
   check_writable(a.output);
