@@ -3,16 +3,19 @@
 # executes the plan by touch over CANopen, in real time. Installs what is missing and builds first.
 #
 #   ./demo.sh [--seed N] [--start NAME] [--task NAME] [--cell NAME] [--output DIR]
+#             [--bin DIR]
+#
+# --bin names programs that are there already, such as /usr/bin: then nothing is installed or built.
 #
 # Exit status 0: the part ended within the task's tolerance of its goal. 1: it did not; the reason is
 # printed. 2: bad usage or bad input.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-seed=1 start=1 task=box_on_table_2d cell=csp6 output=build/demo
+seed=1 start=1 task=box_on_table_2d cell=csp6 output=build/demo bin=
 while (($#)); do
   case "$1" in
-    --seed | --start | --task | --cell | --output)
+    --seed | --start | --task | --cell | --output | --bin)
       if (($# < 2)); then
         echo "demo.sh: $1 needs a value" >&2
         exit 2
@@ -21,7 +24,7 @@ while (($#)); do
       shift 2
       ;;
     --help)
-      sed -n '2,8s/^# \{0,1\}//p' "$0"
+      sed -n '2,11s/^# \{0,1\}//p' "$0"
       exit 0
       ;;
     *)
@@ -31,24 +34,26 @@ while (($#)); do
   esac
 done
 
-.ci/setup.sh build
-echo "== Build: minutes the first time"
-if [[ -t 1 ]]; then
-  cmake --preset release >/dev/null
-  cmake --build --preset release  # its progress is one line on a terminal
-elif ! build_log=$( (cmake --preset release && cmake --build --preset release) 2>&1); then
-  printf '%s\n' "$build_log" >&2
-  exit 1
+if [[ -z $bin ]]; then
+  .ci/setup.sh build
+  echo "== Build: minutes the first time"
+  if [[ -t 1 ]]; then
+    cmake --preset release >/dev/null
+    cmake --build --preset release  # its progress is one line on a terminal
+  elif ! build_log=$( (cmake --preset release && cmake --build --preset release) 2>&1); then
+    printf '%s\n' "$build_log" >&2
+    exit 1
+  fi
+  bin=build/release/bin
+  echo
 fi
-echo
-bin=build/release/bin
 task_file=planner/tasks/$task.yaml cell_file=hw/cells/$cell.yaml
 mkdir -p "$output"
 rm -f "$output"/{plan.tnp,plan.html,truth.json,sim.out,run.lcmlog,run.can.log,result.json,black-box.csv}
 
 echo "== Plan: $task from start $start, positions uncertain"
 "$bin/tenon-plan" "$task_file" --start "$start" --cell "$cell_file" --threads "$(nproc)" -o "$output/plan.tnp"
-"$bin/tenon-inspect" "$output/plan.tnp" --task "$task_file" --report "$output/plan.html" >/dev/null
+"$bin/tenon-inspect" "$output/plan.tnp" --task "$task_file" --cell "$cell_file" --report "$output/plan.html" >/dev/null
 
 echo
 echo "== Virtual arm: $cell, the environment displaced by a draw of seed $seed"

@@ -181,7 +181,9 @@ for stage in "${stages[@]}"; do
   fi
 done
 
-.ci/setup.sh test || exit 1
+packages=test
+[[ $tier == full ]] && packages=full
+.ci/setup.sh "$packages" || exit 1
 tree=$(tree_hash)
 mkdir -p build
 rm -f build/tested

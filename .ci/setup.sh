@@ -3,7 +3,8 @@
 #
 #   .ci/setup.sh build   what building and the demo need
 #   .ci/setup.sh test    these, and what the tests and checks add
-#   .ci/setup.sh fuzz    these, and what the fuzzers add
+#   .ci/setup.sh full    these, and what a release's tests add
+#   .ci/setup.sh fuzz    what the tests need, and what the fuzzers add
 #   .ci/setup.sh page    what makes the pages' bundle of libraries anew
 set -euo pipefail
 
@@ -17,16 +18,18 @@ test_packages=(
   clang-format clang-tidy cppcheck git python3 python3-can python3-serial iproute2
   can-utils qemu-system-x86 busybox-static cpio chromium rt-tests
 )
+full_packages=(mmdebstrap lintian)
 fuzz_packages=(clang)
 page_packages=(nodejs npm)
 
 case "${1:-}" in
   build) packages=("${build_packages[@]}") ;;
   test) packages=("${build_packages[@]}" "${test_packages[@]}") ;;
+  full) packages=("${build_packages[@]}" "${test_packages[@]}" "${full_packages[@]}") ;;
   fuzz) packages=("${build_packages[@]}" "${test_packages[@]}" "${fuzz_packages[@]}") ;;
   page) packages=("${page_packages[@]}") ;;
   *)
-    echo "usage: .ci/setup.sh build|test|fuzz|page" >&2
+    echo "usage: .ci/setup.sh build|test|full|fuzz|page" >&2
     exit 2
     ;;
 esac

@@ -28,7 +28,7 @@ set(TENON_MAY_USE_shared_system shared Threads::Threads)
 set(TENON_MAY_USE_shared_drawing shared)
 set(TENON_MAY_USE_shared_eds    shared)
 set(TENON_MAY_USE_shared_config shared shared_canopen shared_mit shared_system yaml-cpp urdfdom::urdfdom_model
-                                console_bridge::console_bridge nlohmann_json::nlohmann_json)
+                                console_bridge::console_bridge nlohmann_json::nlohmann_json CLI11::CLI11)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
 set(TENON_MAY_USE_lcmtypes_received shared lcmtypes)
 set(TENON_MAY_USE_planner       shared planner_belief planner_search planner_judge)
@@ -115,6 +115,8 @@ endfunction()
 # the repository itself as an include directory: each library exports a directory of links that
 # shows its own folder and nothing else.
 # ---------------------------------------------------------------------------------------------
+set(TENON_INSTALLED_ROOT include/tenon)
+
 function(tenon_include_root target folder)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "EXCEPT")
   set(root ${PROJECT_BINARY_DIR}/roots/${target})
@@ -159,7 +161,9 @@ function(tenon_library name)
 
   tenon_check_dependencies(${name} ${arg_PUBLIC} ${arg_PRIVATE})
   tenon_include_root(${name} ${arg_FOLDER} EXCEPT ${arg_EXCEPT})
-  target_include_directories(${name} PUBLIC ${PROJECT_BINARY_DIR}/roots/${name})
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/roots/${name}>
+                                            $<INSTALL_INTERFACE:${TENON_INSTALLED_ROOT}>)
+  target_compile_features(${name} PUBLIC cxx_std_20)
   target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
 endfunction()
 
@@ -222,7 +226,8 @@ function(tenon_lcm_types name)
   add_library(${name} INTERFACE)
   add_dependencies(${name} ${name}_headers)
   set_target_properties(${name} PROPERTIES TENON_ROW ${name})
-  target_include_directories(${name} SYSTEM INTERFACE ${root})
+  target_include_directories(${name} SYSTEM INTERFACE $<BUILD_INTERFACE:${root}>
+                                                      $<INSTALL_INTERFACE:${TENON_INSTALLED_ROOT}>)
   target_link_libraries(${name} INTERFACE LCM::headers)
 endfunction()
 
@@ -366,6 +371,9 @@ function(tenon_check_target target type)
   list(REMOVE_DUPLICATES links)
   tenon_check_dependencies(${target} ${links})
 
+  list(TRANSFORM includes REPLACE "^\\$<BUILD_INTERFACE:(.*)>$" "\\1")
+  # All headers that are installed are for all who use the installation.
+  list(REMOVE_ITEM includes "$<INSTALL_INTERFACE:${TENON_INSTALLED_ROOT}>")
   foreach(directory IN LISTS includes)
     string(FIND "${directory}" "${PROJECT_BINARY_DIR}/roots/" position)
     if(NOT position EQUAL 0)

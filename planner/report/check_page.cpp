@@ -31,7 +31,7 @@ std::string row(const std::vector<std::string>& cells) {
 }
 
 /// @param titles, rows HTML
-std::string table(const std::vector<std::string>& titles, const std::string& rows) {
+std::string titled_table(const std::vector<std::string>& titles, const std::string& rows) {
   std::string html = "<div class='wide'><table><thead><tr>";
   for (const std::string& title : titles) html += "<th>" + title + "</th>";
   return html + "</tr></thead>\n<tbody>\n" + rows + "</tbody></table></div>\n";
@@ -111,7 +111,7 @@ std::string start_section(const Task& task, const StartCheck& checked) {
     html += picture(task, *start, checked, view);
   }
   const std::string rows = touch_rows(task, *start, checked);
-  if (!rows.empty()) html += table({"Push along", "touches", "with the tool at (mm)"}, rows);
+  if (!rows.empty()) html += titled_table({"Push along", "touches", "with the tool at (mm)"}, rows);
   return html + "</section>\n";
 }
 
@@ -136,9 +136,9 @@ std::string understood(const Task& task, const TaskCheck& check) {
          mm(task.goal.position_m) +
          format(" mm until it touches; the goal's tolerance is %.3g mm.</p>\n",
                 1e3 * task.goal_tolerance_m) +
-         table({"Along", "towards -", "towards +"}, room) +
+         titled_table({"Along", "towards -", "towards +"}, room) +
          "</section>\n<section><h2>Parts</h2>\n" +
-         table({"Name", "Size (mm)", "Middle (mm)", ""}, parts) + "</section>\n";
+         titled_table({"Name", "Size (mm)", "Middle (mm)", ""}, parts) + "</section>\n";
 }
 
 }  // namespace

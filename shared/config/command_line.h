@@ -11,6 +11,7 @@
 
 #include "shared/base/did_you_mean.h"
 #include "shared/base/error.h"
+#include "shared/config/command_line_texts.h"
 #include "shared/config/signals.h"
 
 namespace tenon {
@@ -46,8 +47,29 @@ inline std::string usage_error(const CLI::App& app, const CLI::ParseError& error
   return std::string(error.what()) + "; see --help";
 }
 
-/// @throws InputError for bad usage, CommandLineAnswered after --help or --version
+/// What an installation is made from, out of the same table as --help.
+inline void answer_with_texts(CLI::App& app, int argc, char** argv) {
+  const auto alone = [] { throw CLI::ValidationError("--man and --bash-completion stand alone"); };
+  app.add_flag_callback("--man", alone, "Print the manual page and exit");
+  app.add_flag_callback("--bash-completion", alone,
+                        "Print what bash sources to complete this program's command line");
+  if (argc != 2) return;
+  const std::string_view asked = argv[1];
+  const std::string path = argv[0];
+  const std::string program = path.substr(path.rfind('/') + 1);
+  if (asked == "--man") {
+    std::fputs(manual_page(app, program, app.version()).c_str(), stdout);
+  } else if (asked == "--bash-completion") {
+    std::fputs(bash_completion(app, program).c_str(), stdout);
+  } else {
+    return;
+  }
+  throw CommandLineAnswered{};
+}
+
+/// @throws InputError for bad usage, CommandLineAnswered after --help, --version and their like
 inline void parse(CLI::App& app, int argc, char** argv) {
+  answer_with_texts(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -56,7 +56,7 @@ RESERVED = [
      lambda path, main: path.startswith(("shared/config/", "tests/"))),
     ("urdfdom", re.compile(r"^urdf"), lambda path, main: path.startswith("shared/config/")),
     ("CLI11", re.compile(r"^CLI/"),
-     lambda path, main: main or path == "shared/config/command_line.h"),
+     lambda path, main: main or path.startswith("shared/config/command_line")),
     ("nlohmann-json", re.compile(r"^nlohmann/"),
      lambda path, main: not path.startswith("shared/") or path.startswith("shared/config/")),
     ("CANopen", re.compile(r"^shared/canopen/"),

@@ -15,7 +15,7 @@ RULES = [
     ("ODE", "/usr/include/ode/", {"sim_physics", "sim_cell"}),
     ("LCM", "/usr/include/lcm/", {"executor_telemetry", "tenon-monitor", "sim_listener"}),
     ("yaml-cpp", "/usr/include/yaml-cpp/", {"shared_config"}),
-    ("CLI11", "/usr/include/CLI/", set()),
+    ("CLI11", "/usr/include/CLI/", {"shared_config"}),
     ("nlohmann-json", "/usr/include/nlohmann/",
      {"shared_config", "planner_report", "executor_dry_run", "executor_telemetry", "sim_cell", "sim_evaluation"}),
 ]

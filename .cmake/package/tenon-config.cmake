@@ -1,0 +1,15 @@
+# find_package(tenon): the targets tenon::planner, tenon::executor and their rooms; sim_physics is the physics
+# that the planner asks, shared_config reads task, cell and plan files.
+include(CMakeFindDependencyMacro)
+list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
+find_dependency(Threads)
+find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(yaml-cpp)
+find_dependency(urdfdom)
+find_dependency(console_bridge)
+find_dependency(nlohmann_json)
+find_dependency(CLI11)
+find_dependency(ODE)
+find_dependency(LCM)
+list(REMOVE_ITEM CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
+include(${CMAKE_CURRENT_LIST_DIR}/tenon-targets.cmake)

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Installs a build into an empty folder: programs that run from there, a manual page and a completion that name
+every option of each, and a project that finds the libraries, plans with them and executes the plan.
+
+  installed.py CMAKE BUILD SOURCE
+"""
+import gzip
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+PROGRAMS = ["tenon-can", "tenon-evaluate", "tenon-exec", "tenon-inspect", "tenon-monitor", "tenon-plan", "tenon-sim"]
+# (program, the line so far, what bash must offer for its last word)
+COMPLETIONS = [
+    ("tenon-plan", ["--ch"], {"--check"}),
+    ("tenon-plan", ["--method", "contact"], {"contact-greedy"}),
+    ("tenon-can", ["sc"], {"scan"}),
+]
+
+
+class Failures:
+    def __init__(self):
+        self.count = 0
+
+    def check(self, good, what):
+        if not good:
+            self.count += 1
+            print(f"FAILED: {what}")
+
+
+def run(*command, **options):
+    ended = subprocess.run([str(word) for word in command], text=True, capture_output=True, check=False, **options)
+    if ended.returncode != 0:
+        raise SystemExit(f"FAILED: {' '.join(map(str, command))}:\n{ended.stdout}{ended.stderr}")
+    return ended.stdout
+
+
+def options_of(program):
+    """As the help of the program and of its subcommands has them: this reads no option table."""
+    text = run(program, "--help")
+    options = set(re.findall(r"^  (?:-\w,)?(--[a-z][a-z-]*)", text, re.M)) | set(re.findall(r"^  (-\w),", text, re.M))
+    subcommands = text.partition("\nSubcommands:\n")[2]
+    for name in re.findall(r"^  ([a-z]+) ", subcommands, re.M):
+        more = run(program, name, "--help")
+        options |= set(re.findall(r"^  (?:-\w,)?(--[a-z][a-z-]*)", more, re.M))
+    return options
+
+
+def check_texts(prefix, failures):
+    named = 0
+    for program in PROGRAMS:
+        options = options_of(prefix / "bin" / program)
+        failures.check({"--help", "--version", "--man"} <= options, f"{program}: its help names only {options}")
+        page = gzip.decompress((prefix / f"share/man/man1/{program}.1.gz").read_bytes()).decode()
+        words = set(re.findall(r"(?<![\w-])--?[a-z][a-z-]*", page.replace("\\-", "-").replace("\\fB", " ")))
+        completion = prefix / "share/bash-completion/completions" / program
+        offered = set(re.findall(r"--?[a-z][a-z-]*", completion.read_text()))
+        for option in sorted(options):
+            named += 1
+            failures.check(option in words, f"{program}: its manual page lacks {option}")
+            failures.check(option in offered, f"{program}: its completion lacks {option}")
+    print(f"{len(PROGRAMS)} manual pages and completions name {named} options")
+
+
+def check_completion(prefix, failures):
+    for program, line, expected in COMPLETIONS:
+        words = " ".join(f"'{word}'" for word in [program, *line])
+        function = "_" + program.replace("-", "_")
+        script = (f"source {prefix}/share/bash-completion/completions/{program}; COMP_WORDS=({words});"
+                  f" COMP_CWORD={len(line)}; {function}; printf '%s\\n' \"${{COMPREPLY[@]}}\"")
+        with tempfile.TemporaryDirectory() as empty:
+            offered = set(run("bash", "-c", script, cwd=empty).split())
+        failures.check(offered == expected, f"{program} {line}: bash offers {offered}, not {expected}")
+
+
+def check_project(cmake, prefix, source, folder, failures):
+    build = folder / "project"
+    run(cmake, "-S", pathlib.Path(__file__).resolve().parent / "project", "-B", build, "-G", "Ninja",
+        f"-DCMAKE_PREFIX_PATH={prefix}", f"-DEXAMPLES={source}/tests/examples", "-DCMAKE_BUILD_TYPE=Release")
+    run(cmake, "--build", build)
+    tasks = prefix / "share/tenon/planner/tasks"
+    said = run(build / "plan_a_task", tasks / "box_on_table_2d.yaml", folder / "plan.tnp")
+    failures.check("random starts end at the goal" in said, f"plan_a_task says {said}")
+    said = run(build / "run_a_plan", folder / "plan.tnp")
+    failures.check("contact after" in said, f"run_a_plan says {said}")
+    print(run(prefix / "bin/tenon-inspect", folder / "plan.tnp").splitlines()[0])
+
+
+def main():
+    cmake, build, source = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+    failures = Failures()
+    with tempfile.TemporaryDirectory(prefix="tenon_installed_") as name:
+        folder = pathlib.Path(name)
+        prefix = folder / "usr"
+        run(cmake, "--install", build, "--prefix", prefix)
+        version = run(prefix / "bin/tenon-plan", "--version").strip()
+        wanted = re.search(r"project\(tenon VERSION ([0-9.]+)", (source / "CMakeLists.txt").read_text()).group(1)
+        failures.check(wanted in version, f"tenon-plan --version says {version}, not {wanted}")
+        check_texts(prefix, failures)
+        check_completion(prefix, failures)
+        checked = run(prefix / "bin/tenon-plan", "--check", "planner/tasks/box_on_table_2d.yaml",
+                      "--cell", "hw/cells/gantry3.yaml", cwd=prefix / "share/tenon")
+        failures.check("nothing stands against" in checked, f"--check from the installation says {checked}")
+        check_project(cmake, prefix, source, folder, failures)
+    print(f"{failures.count} failures")
+    return 1 if failures.count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
