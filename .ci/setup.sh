@@ -16,7 +16,7 @@ build_packages=(
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev libfcl-dev
   clang-format clang-tidy cppcheck git python3 python3-can python3-serial iproute2
-  can-utils qemu-system-x86 busybox-static cpio chromium rt-tests
+  python3-jsonschema python3-yaml can-utils qemu-system-x86 busybox-static cpio chromium rt-tests
 )
 full_packages=(mmdebstrap lintian)
 fuzz_packages=(clang)

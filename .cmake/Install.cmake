@@ -15,6 +15,7 @@ install(DIRECTORY planner/tasks DESTINATION ${data}/planner COMPONENT runtime)
 install(DIRECTORY hw/cells hw/drives hw/robots DESTINATION ${data}/hw COMPONENT runtime)
 install(DIRECTORY sim/experiments DESTINATION ${data}/sim COMPONENT runtime FILES_MATCHING PATTERN "*.yaml"
         PATTERN results EXCLUDE)
+install(DIRECTORY shared/config/schemas DESTINATION ${data}/shared/config COMPONENT runtime)
 install(PROGRAMS demo.sh DESTINATION ${data} COMPONENT runtime)
 foreach(readme README.md planner/README.md executor/README.md hw/README.md sim/README.md shared/plan/FORMAT.md)
   get_filename_component(folder ${readme} DIRECTORY)
