@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -42,7 +43,7 @@ Names known_in(const std::string& message) {
   const std::size_t begin = message.find(mark);
   if (begin == std::string::npos) return {};
   std::string list = message.substr(begin + mark.size());
-  list = list.substr(0, list.find(';'));
+  list.erase(std::min(list.size(), list.find(';')));
   Names names;
   std::stringstream words(list);
   for (std::string word; std::getline(words, word, ',');) {
