@@ -31,6 +31,11 @@ class DistanceGrid {
   /// function
   template <typename Exact>
   [[nodiscard]] std::optional<Sample> at(const Vector3& point_m, const Exact& exact_m) const;
+  /// No more than the true distance, which changes by no more than the way from the nearest node.
+  /// Empty where the lattice has no nodes.
+  template <typename Exact>
+  [[nodiscard]] std::optional<double> at_least_m(const Vector3& point_m,
+                                                 const Exact& exact_m) const;
 
  private:
   static constexpr std::size_t kEdge = 4;  ///< nodes along a brick's edge
@@ -63,6 +68,15 @@ class DistanceGrid {
     Brick* known = bricks_[brick].load(std::memory_order_acquire);
     return (known != nullptr ? *known : make_brick(bricks_[brick]))[within];
   }
+  template <typename Exact>
+  [[nodiscard]] static double distance_at(Node& node, const Vector3& node_m, const Exact& exact_m) {
+    float distance_m = node.load(std::memory_order_relaxed);
+    if (std::isnan(distance_m)) {
+      distance_m = static_cast<float>(exact_m(node_m));
+      node.store(distance_m, std::memory_order_relaxed);
+    }
+    return static_cast<double>(distance_m);
+  }
   [[nodiscard]] static Brick& make_brick(std::atomic<Brick*>& slot);
 
   double spacing_m_;
@@ -73,6 +87,24 @@ class DistanceGrid {
   std::size_t count_ = 1;
   std::unique_ptr<std::atomic<Brick*>[]> bricks_;
 };
+
+template <typename Exact>
+std::optional<double> DistanceGrid::at_least_m(const Vector3& point_m, const Exact& exact_m) const {
+  const Vector3 scaled = per_m_ * (point_m - low_m_);
+  std::size_t brick = 0;
+  std::size_t within = 0;
+  Vector3 node_m;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    if (!(scaled[i] >= 0.0 && scaled[i] < last_[axis])) return std::nullopt;
+    const auto nearest = static_cast<std::size_t>(scaled[i] + 0.5);
+    brick += nearest / kEdge * stride_[axis];
+    within = within * kEdge + nearest % kEdge;
+    node_m[i] = low_m_[i] + static_cast<double>(nearest) * spacing_m_;
+  }
+  const double distance_m = distance_at(node(brick, within), node_m, exact_m);
+  return distance_m - (point_m - node_m).norm();
+}
 
 template <typename Exact>
 std::optional<DistanceGrid::Sample> DistanceGrid::at(const Vector3& point_m,
@@ -91,17 +123,11 @@ std::optional<DistanceGrid::Sample> DistanceGrid::at(const Vector3& point_m,
     const std::size_t at_z = row >> 1U;
     std::array<double, 2> end_m{};
     for (std::size_t at_x = 0; at_x < 2; ++at_x) {
-      Node& known = node(x.brick[at_x] + y.brick[at_y] + z.brick[at_z],
-                         x.within[at_x] + y.within[at_y] + z.within[at_z]);
-      float distance_m = known.load(std::memory_order_relaxed);
-      if (std::isnan(distance_m)) {
-        const Vector3 offset(static_cast<double>(at_x), static_cast<double>(at_y),
-                             static_cast<double>(at_z));
-        distance_m = static_cast<float>(
-            exact_m(Vector3(Vector3(x.low_m, y.low_m, z.low_m) + spacing_m_ * offset)));
-        known.store(distance_m, std::memory_order_relaxed);
-      }
-      end_m[at_x] = static_cast<double>(distance_m);
+      const Vector3 offset(static_cast<double>(at_x), static_cast<double>(at_y),
+                           static_cast<double>(at_z));
+      end_m[at_x] = distance_at(node(x.brick[at_x] + y.brick[at_y] + z.brick[at_z],
+                                     x.within[at_x] + y.within[at_y] + z.within[at_z]),
+                                Vector3(x.low_m, y.low_m, z.low_m) + spacing_m_ * offset, exact_m);
     }
     slope_x[row] = end_m[1] - end_m[0];
     along_x_m[row] = end_m[0] + x.part * slope_x[row];

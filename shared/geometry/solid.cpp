@@ -153,4 +153,12 @@ Solid::Place Solid::sampled_place(const Vector3& point_m, std::uint32_t guess) c
   return {sample->distance_m, outwards, point_m - sample->distance_m * outwards, guess};
 }
 
+double Solid::distance_at_least_m(const Vector3& point_m) const {
+  // Nodes are kept in single precision.
+  constexpr double kRounding = 1e-6;
+  const auto at_least_m =
+      grid_.at_least_m(point_m, [&](const Vector3& node_m) { return place(node_m).distance_m; });
+  return at_least_m ? *at_least_m - kRounding * size_m_.maxCoeff() : place(point_m).distance_m;
+}
+
 }  // namespace tenon

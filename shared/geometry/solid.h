@@ -39,6 +39,10 @@ class Solid {
   /// rounded within a lattice cell of edges. The nearest point follows from distance and gradient.
   [[nodiscard]] Place sampled_place(const Vector3& point_m, std::uint32_t guess = 0) const;
 
+  /// The exact distance is no less, and where the lattice knows of it not much more; many times as
+  /// fast as place().
+  [[nodiscard]] double distance_at_least_m(const Vector3& point_m) const;
+
   struct Edge {
     std::uint32_t from = 0;  ///< corners of the mesh
     std::uint32_t to = 0;

@@ -10,6 +10,7 @@
 #include "shared/base/random.h"
 #include "shared/geometry/extrusion.h"
 #include "shared/geometry/nearest_cells.h"
+#include "tests/support/example_parts.h"
 #include "tests/support/meshes.h"
 
 namespace tenon {
@@ -130,6 +131,23 @@ TEST(Solid, SampledPlacesAreThoseOfTheSurfaceButForItsEdges) {
   EXPECT_LT(flat_most_m, 1e-8);  // a float's, at these sizes
   EXPECT_LT(most_m, 0.6 * kSpacing_m);
   EXPECT_GT(most_m, 0.05 * kSpacing_m);
+}
+
+TEST(Solid, NoPlaceIsNearerThanItsLowerBound) {
+  const Solid solid(tests::example_parts().at("keyed_socket.stl"));
+  // The nearest node is no farther than half a cell's diagonal, and its own distance no more off.
+  const double slack_m = std::sqrt(3.0) / 256.0 * solid.size_m().maxCoeff() + 1e-6;
+  Random random(7);
+  for (int i = 0; i < 3000; ++i) {
+    Vector3 point_m;
+    for (int axis = 0; axis < 3; ++axis) {
+      point_m[axis] = 1.6 * (random.uniform() - 0.5) * solid.size_m()[axis];
+    }
+    const double exact_m = solid.place(point_m).distance_m;
+    const double at_least_m = solid.distance_at_least_m(point_m);
+    EXPECT_LE(at_least_m, exact_m + 1e-12);
+    EXPECT_GE(at_least_m, exact_m - slack_m);
+  }
 }
 
 TEST(Solid, BeyondItsLatticeAPlaceIsExact) {

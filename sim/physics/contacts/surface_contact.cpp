@@ -1,6 +1,7 @@
 #include "sim/physics/contacts/surface_contact.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace tenon::sim {
@@ -87,9 +88,14 @@ void SurfaceContact::gather(Side& side, const Pose& X_SE, const Stand& stand) {
     Side::Ball& known = side.balls[waiting.back()];
     waiting.pop_back();
     if (known.far_until_m <= stand.moved_m + kSoon_m && known.near_until_m <= stand.moved_m) {
-      const Surface::Place at = side.surface->place(point_in(X_SE, ball.centre_m), known.guess);
-      const double gap_m = at.distance_m - ball.radius_m - stand.offset_m;
-      known.guess = at.guess;
+      const Vector3 centre_m = point_in(X_SE, ball.centre_m);
+      auto distance_m = side.surface->distance_at_least_m(centre_m);
+      if (!distance_m) {
+        const Surface::Place at = side.surface->place(centre_m, known.guess);
+        known.guess = at.guess;
+        distance_m = at.distance_m;
+      }
+      const double gap_m = *distance_m - ball.radius_m - stand.offset_m;
       known.far_until_m = gap_m > kNear_m ? stand.moved_m + gap_m - kEarly_m : 0.0;
       known.near_until_m = gap_m > kNear_m ? 0.0 : stand.moved_m + kNear_m - gap_m;
     }
@@ -115,8 +121,35 @@ void SurfaceContact::add(const Found& found, const Stand& stand,
                               found.held ? outwards : Vector3(-outwards), found.depth_m));
 }
 
+std::optional<double> SurfaceContact::distance_at_least_m(Side& side, std::uint32_t index,
+                                                          const Pose& X_SE) const {
+  const Surface::Piece& piece = side.edges->pieces()[index];
+  const std::vector<Vector3>& points_m = side.edges->points_m();
+  std::array<double, 2> ends_m{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::uint32_t end = i == 0 ? piece.from : piece.to;
+    Side::Point& point = side.points[end];
+    if (point.at_least_time != time_) {
+      const auto at_least_m = side.surface->distance_at_least_m(point_in(X_SE, points_m[end]));
+      if (!at_least_m) return std::nullopt;
+      point.at_least_m = *at_least_m;
+      point.at_least_time = time_;
+    }
+    ends_m[i] = point.at_least_m;
+  }
+  const Vector3& from_m = points_m[piece.from];
+  const Vector3& to_m = points_m[piece.to];
+  const double middle_m =
+      side.surface->distance_at_least_m(point_in(X_SE, 0.5 * (from_m + to_m))).value();
+  // A distance falls by no more than the way, from both ends of either half.
+  const double half_m = 0.5 * (to_m - from_m).norm();
+  return 0.5 * (std::min(ends_m[0], ends_m[1]) + middle_m - half_m);
+}
+
 double SurfaceContact::look_at(Side& side, std::uint32_t index, const Pose& X_SE,
                                const Stand& stand) {
+  const auto at_least_m = distance_at_least_m(side, index, X_SE);
+  if (at_least_m && *at_least_m > stand.offset_m) return *at_least_m - stand.offset_m;
   const Surface& edges = *side.edges;
   const Surface::Piece& piece = edges.pieces()[index];
   const bool held = &side == &held_;

@@ -4,6 +4,7 @@
 #include <ode/ode.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "sim/physics/surfaces/surface.h"
@@ -47,13 +48,19 @@ class SurfaceContact {
     };
     std::vector<Ball> balls;
     struct Point {
-      Surface::Place place;    ///< in the surface's frame
-      std::uint64_t time = 0;  ///< when it was
+      Surface::Place place;             ///< in the surface's frame
+      std::uint64_t time = 0;           ///< when it was
+      double at_least_m = 0.0;          ///< of its distance
+      std::uint64_t at_least_time = 0;  ///< likewise
     };
     std::vector<Point> points;  ///< of the edges
   };
   void gather(Side& side, const Pose& X_SE, const Stand& stand);
   const Surface::Place& place(Side& side, std::uint32_t point, const Pose& X_SE) const;
+  /// What a piece's distance is no less than, m; of its ends and its middle alone, so that it may
+  /// be little. Empty where only places tell.
+  std::optional<double> distance_at_least_m(Side& side, std::uint32_t piece,
+                                            const Pose& X_SE) const;
   /// @return a gap, m
   double look_at(Side& side, std::uint32_t piece, const Pose& X_SE, const Stand& stand);
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "shared/math/pose.h"
@@ -27,6 +28,12 @@ class Surface {
   };
   /// The same numbers whatever the guess.
   [[nodiscard]] virtual Place place(const Vector3& point_m, std::uint32_t guess) const = 0;
+
+  /// Where a place costs much: no more than its distance, for much less. Empty: ask for the place.
+  [[nodiscard]] virtual std::optional<double> distance_at_least_m(
+      const Vector3& /*point_m*/) const {
+    return std::nullopt;
+  }
 
   struct Piece {
     std::uint32_t from = 0;  ///< indices of points

@@ -123,6 +123,11 @@ class SolidSurface final : public Surface {
     return {found.distance_m, found.outwards, found.nearest_m, found.triangle};
   }
 
+  [[nodiscard]] std::optional<double> distance_at_least_m(const Vector3& point_m) const override {
+    if (sampled_) return std::nullopt;
+    return solid_->distance_at_least_m(point_m);
+  }
+
  private:
   std::shared_ptr<const Solid> solid_;
   bool sampled_;
