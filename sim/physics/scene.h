@@ -49,6 +49,8 @@ class Scene {
   Contacts find_contacts(bool turns);
   /// Makes the joints of the contacts that were found. Call before OdeWorld::step().
   void make_joints(OdeWorld& world, double step_s, const ContactLaw& law);
+  /// Whether any shape is a solid.
+  [[nodiscard]] bool has_solids() const { return solids_; }
   /// The contact points that were found.
   [[nodiscard]] const std::vector<dContactGeom>& points() const { return points_; }
 

@@ -81,6 +81,12 @@ void CompliantTool::place(const Pose& pose, const Vector3& force_N) {
   show();
 }
 
+void CompliantTool::return_to(const State& state) {
+  tool_.reset(state.tool);
+  bent_m_ = state.bent_m;
+  shown_ = false;
+}
+
 void CompliantTool::fly(const GuardedMove::Setpoint& setpoint, double step_s,
                         const Vector6& wrench) {
   tool_.update(setpoint, wrench, step_s);

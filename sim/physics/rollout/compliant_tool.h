@@ -50,6 +50,14 @@ class CompliantTool {
   /// until it is needed.
   void fly(const GuardedMove::Setpoint& setpoint, double step_s,
            const Vector6& wrench = Vector6::Zero());
+  /// All that a step changes.
+  struct State {
+    Admittance::State tool;
+    Vector3 bent_m = Vector3::Zero();
+  };
+  [[nodiscard]] State state() const { return {tool_.state(), bent_m_}; }
+  /// As it was; the body stays behind until it is needed.
+  void return_to(const State& state);
   /// The translational velocity that fly() would leave the part with, and by how much a force along
   /// each axis would change it (m/s a N; 0 for an axis that does not yield).
   [[nodiscard]] Vector3 free_velocity_mps(const GuardedMove::Setpoint& setpoint,
