@@ -52,6 +52,7 @@ struct PlanReport {
   std::size_t expansions = 0;        ///< of all searches
   std::size_t expansions_first = 0;  ///< of the first of them, before anything was refuted
   std::size_t guides = 0;            ///< that led the searches
+  std::string guide;                 ///< that was followed to the letter; empty: a search's path
   CoordinateMask unsettled = 0;      ///< see Attractors
   std::size_t states = 0;
   std::vector<std::string> refusals;  ///< what was refuted, and why

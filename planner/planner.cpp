@@ -1,5 +1,6 @@
 #include "planner/planner.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "planner/judge/path_judge.h"
 #include "planner/search/contact_greedy.h"
 #include "planner/search/goal_attractors.h"
+#include "planner/search/guide_way.h"
 #include "planner/search_moves.h"
 #include "planner/searched_graph.h"
 #include "planner/wording.h"
@@ -33,6 +35,12 @@ CellAssumptions assumptions_of(const Task& task, const PlannerOptions& options) 
 // By how much of what they exceed 1 by the weights are lowered, and where they become 1.
 constexpr double kLowered = 0.5;
 constexpr double kLeastShare = 0.1;
+
+// So many moves are simulated for a first search before guides are followed to the letter. Where a
+// search finds a path at all without long detours, it has found it by then.
+constexpr std::uint64_t kFirstMoves = 1000;
+// So many starts that its way has missed make the same guide try again.
+constexpr int kTriesAGuide = 6;
 
 // After how long without a line progress is told, so that it is never silent for 2 s.
 constexpr double kSilent_s = 1.0;
@@ -82,18 +90,18 @@ class Planning {
     if (at_goal(summarise(start, task_), task_)) {
       return ended(PlanStatus::kAlreadyAtGoal, already_at_goal(start_));
     }
-    searched_.emplace(task_, start, guides_from(start), succ_);
-    for (std::size_t round = 0; round < options_.rounds_max; ++round) {
-      search({task_.w1, task_.w2, options_.expansions_max}, [this] { return out_of_budget(); });
-      if (!report_.search.has_path) return without_path();
-      Judgement judgement = judge_.judge(searched_->displacements(report_.search.path));
-      if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
-        keep(std::move(*judged), report_.search);
-        improve();
-        return ended(PlanStatus::kPlanned, "");
-      }
-      learn(std::get<Refutation>(judgement));
+    Attractors attractors = guides_from(start);
+    const std::vector<Guide> candidates = attractors.candidates;
+    searched_.emplace(task_, start, std::move(attractors), succ_);
+    const auto enough = [this] {
+      return !is_baseline() && succ_.counters().rollouts >= kFirstMoves;
+    };
+    if (searched([&] { return out_of_budget() || enough(); }) ||
+        (enough() && (followed(candidates) || searched([this] { return out_of_budget(); })))) {
+      improve();
+      return ended(PlanStatus::kPlanned, "");
     }
+    if (!report_.search.has_path) return without_path();
     return ended(PlanStatus::kNotCertified, every_path_refuted(report_, options_.rounds_max));
   }
 
@@ -130,7 +138,7 @@ class Planning {
 
   Attractors guides_from(const Belief& start) {
     Attractors attractors = timed(now_s_, report_.times.attractors_s, [&] {
-      return is_baseline() ? Attractors{{}, goal_attractors(task_, start, long_succ_), 0}
+      return is_baseline() ? Attractors{{}, {}, goal_attractors(task_, start, long_succ_), 0}
                            : find_attractors(task_, start, long_succ_, pool_.front(),
                                              [this] { return out_of_budget(); });
     });
@@ -138,6 +146,52 @@ class Planning {
     report_.unsettled = attractors.unsettled;
     tell(guides_found(attractors.guides, long_succ_.counters().rollouts));
     return attractors;
+  }
+
+  /// Searches, each without what the ones before had refuted. @return whether there is a plan
+  bool searched(const std::function<bool()>& stop) {
+    for (; round_ < options_.rounds_max; ++round_) {
+      search({task_.w1, task_.w2, options_.expansions_max}, stop);
+      if (!report_.search.has_path) return false;
+      Judgement judgement = judge_.judge(searched_->displacements(report_.search.path));
+      if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
+        keep(std::move(*judged), report_.search);
+        return true;
+      }
+      learn(std::get<Refutation>(judgement));
+    }
+    return false;
+  }
+
+  /// Follows one guide after the other to the letter. @return whether there is a plan
+  bool followed(const std::vector<Guide>& candidates) {
+    doing_ = "following guides";
+    return std::any_of(candidates.begin(), candidates.end(),
+                       [this](const Guide& guide) { return leads(guide); });
+  }
+
+  /// A start that was not known makes the next try take another way.
+  bool leads(const Guide& guide) {
+    for (int tries = 0; tries < kTriesAGuide && !out_of_budget(); ++tries) {
+      const auto way = timed(now_s_, report_.times.search_s, [&] {
+        return follow_guide(guide, task_, searched_->start(), start_.pose, succ_, pool_.front());
+      });
+      if (!way) return false;
+      tell(guide_followed(guide, way->size()));
+      Judgement judgement = judge_.judge(*way);
+      if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
+        report_.guide = guide_text(guide);
+        keep(std::move(*judged), SearchResult{});
+        return true;
+      }
+      const auto& refutation = std::get<Refutation>(judgement);
+      const bool fresh = searched_->add(refutation.chain.start);
+      report_.refusals.push_back(refutation.why +
+                                 (fresh ? "; it becomes a particle" : "; the guide is left"));
+      tell("refuted: " + report_.refusals.back());
+      if (!fresh) return false;
+    }
+    return false;
   }
 
   void search(const SearchParameters& parameters, const std::function<bool()>& stop) {
@@ -259,6 +313,7 @@ class Planning {
   SuccessorEngine long_succ_;
   PathJudge judge_;
   std::optional<SearchedGraph> searched_;
+  std::size_t round_ = 0;
   bool refuted_ = false;  ///< the last better path
   double told_s_;         ///< when progress was last told
   const char* doing_ = "looking for guides";

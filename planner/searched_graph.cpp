@@ -30,19 +30,24 @@ std::vector<Vector6> SearchedGraph::displacements(const std::vector<PathEdge>& p
   return displacements;
 }
 
+bool SearchedGraph::add(const Particle& start) {
+  if (known(start) != belief_.particles.end()) return false;
+  belief_.particles.push_back(start);
+  states_before_ += graph_->size();
+  graph_.emplace(task_, belief_, attractors_, succ_);
+  return true;
+}
+
+std::vector<Particle>::const_iterator SearchedGraph::known(const Particle& start) const {
+  return std::find_if(belief_.particles.begin(), belief_.particles.end(),
+                      [&](const Particle& particle) { return same_start(particle, start); });
+}
+
 std::optional<std::size_t> SearchedGraph::learn(const Refutation& refutation,
                                                 const std::vector<PathEdge>& path) {
-  std::vector<Particle>& particles = belief_.particles;
-  const Particle& start = refutation.chain.start;
-  const auto known = std::find_if(particles.begin(), particles.end(),
-                                  [&](const Particle& p) { return same_start(p, start); });
-  if (known == particles.end()) {
-    particles.push_back(start);
-    states_before_ += graph_->size();
-    graph_.emplace(task_, belief_, attractors_, succ_);
-    return std::nullopt;
-  }
-  const auto particle = static_cast<std::size_t>(known - particles.begin());
+  if (add(refutation.chain.start)) return std::nullopt;
+  const auto known_at = known(refutation.chain.start);
+  const auto particle = static_cast<std::size_t>(known_at - belief_.particles.begin());
   const std::size_t step =
       refutation.step ? *refutation.step : departure(refutation.chain, particle, path);
   succ_.refuse(graph_->belief(path[step].from).particles[particle],

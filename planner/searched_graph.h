@@ -28,19 +28,25 @@ class SearchedGraph {
   /// One a step of a path that was found in graph().
   [[nodiscard]] std::vector<Vector6> displacements(const std::vector<PathEdge>& path) const;
 
+  /// What is known of the start: its particles, and the starts that refuted a path.
+  [[nodiscard]] const Belief& start() const { return belief_; }
+  /// Makes a start a particle: graph() begins anew. @return false where it is one already
+  bool add(const Particle& start);
+
   /// A chain from a start that the search did not know of makes that start a particle: graph()
   /// begins anew. Otherwise the search was wrong about a move, and does without it.
   /// @return the step whose move is gone; empty where there is a new particle
   std::optional<std::size_t> learn(const Refutation& refutation, const std::vector<PathEdge>& path);
 
  private:
+  [[nodiscard]] std::vector<Particle>::const_iterator known(const Particle& start) const;
   /// The step in which a chain leaves what the search had foreseen for its particle; the last one
   /// where it does not.
   [[nodiscard]] std::size_t departure(const Chain& chain, std::size_t particle,
                                       const std::vector<PathEdge>& path) const;
 
   const Task& task_;
-  Belief belief_;  // the start's particles, and the starts that refuted a path
+  Belief belief_;
   Attractors attractors_;
   SuccessorEngine& succ_;
   std::optional<BeliefGraph> graph_;

@@ -45,23 +45,29 @@ std::string unsettled(CoordinateMask axes) {
 
 }  // namespace
 
+std::string guide_text(const Guide& guide) {
+  std::string contacts;
+  for (const ContactAttractor& contact : guide.contacts) {
+    contacts += format("%s%s%s to %s", contacts.empty() ? "" : ", ", contact.sign > 0 ? "+" : "-",
+                       axis_name(contact.axis), contact.face ? "a face" : "an edge");
+  }
+  return contacts;
+}
+
 std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves) {
   std::string text = format("%zu guides, found with %llu moves", guides.size(),
                             static_cast<unsigned long long>(moves));
-  for (const Guide& guide : guides) {
-    std::string contacts;
-    for (const ContactAttractor& contact : guide.contacts) {
-      contacts += format("%s%s%s to %s", contacts.empty() ? "" : ", ", contact.sign > 0 ? "+" : "-",
-                         axis_name(contact.axis), contact.face ? "a face" : "an edge");
-    }
-    text += "; " + contacts;
-  }
+  for (const Guide& guide : guides) text += "; " + guide_text(guide);
   return text;
 }
 
 std::string still(const char* doing, std::uint64_t moves, std::size_t states) {
   return format("%s, %llu moves simulated and %zu states so far", doing,
                 static_cast<unsigned long long>(moves), states);
+}
+
+std::string guide_followed(const Guide& guide, std::size_t moves) {
+  return "the guide " + guide_text(guide) + format(" leads to the goal in %zu steps", moves);
 }
 
 std::string path_found(const SearchResult& search) {

@@ -23,10 +23,15 @@ struct SearchLimits {
   std::uint64_t moves = 0;
 };
 
+/// "+x to a face, -z to a face".
+[[nodiscard]] std::string guide_text(const Guide& guide);
+
 // Progress.
 /// That planning goes on. @param doing "searching"  @param moves simulated so far, of all kinds
 [[nodiscard]] std::string still(const char* doing, std::uint64_t moves, std::size_t states);
 [[nodiscard]] std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves);
+/// That a guide leads to the goal by itself. @param moves of that way
+[[nodiscard]] std::string guide_followed(const Guide& guide, std::size_t moves);
 [[nodiscard]] std::string path_found(const SearchResult& search);
 
 /// What refuted a path, and what was learnt from it.

@@ -58,6 +58,23 @@ void keep_earliest(VariantRun& run, const Disagreement& found) {
   run.holds = false;
 }
 
+/// The first move of a chain that is not as another's; its last where all are.
+std::size_t parted(const Chain& chain, const Chain& planned) {
+  const std::size_t common = std::min(chain.moves.size(), planned.moves.size());
+  for (std::size_t i = 0; i < common; ++i) {
+    if (!difference(chain.moves[i], planned.moves[i]).empty()) return chain.steps[i];
+  }
+  return chain.steps.empty() ? 0 : chain.steps.back();
+}
+
+/// Why a chain does not do what it did in the same physics. @return empty where it does
+std::string astray(const Chain& chain, const Chain& planned) {
+  if (!chain.done) return chain.failure;
+  if (!planned.done || chain.moves.empty()) return {};
+  const std::string why = difference(chain.moves.back(), planned.moves.back());
+  return why.empty() ? why : "at its end, " + why;
+}
+
 void judge(VariantRun& run, const VariantRun& reference, const Task& task, std::size_t last_step) {
   run.holds = true;
   const bool same_physics = run.variant.friction == reference.variant.friction &&
@@ -66,14 +83,10 @@ void judge(VariantRun& run, const VariantRun& reference, const Task& task, std::
   for (std::size_t p = 0; p < run.chains.size(); ++p) {
     const Chain& chain = run.chains[p];
     const Chain& planned = reference.chains[p];
-    const std::size_t common = std::min(chain.moves.size(), planned.moves.size());
-    for (std::size_t i = 0; same_physics && i < common; ++i) {
-      const std::string why = difference(chain.moves[i], planned.moves[i]);
-      if (why.empty()) continue;
-      keep_earliest(run, {chain.steps[i], p, why});
-      break;
-    }
-    if (!chain.done) {
+    if (same_physics) {
+      const std::string why = astray(chain, planned);
+      if (!why.empty()) keep_earliest(run, {parted(chain, planned), p, why});
+    } else if (!chain.done) {
       keep_earliest(run, {chain.steps.empty() ? 0 : chain.steps.back(), p, chain.failure});
     }
   }
@@ -168,7 +181,8 @@ void check_same_task(const Plan& plan, const Task& task) {
 
 }  // namespace
 
-Certification certify(std::span<const std::uint8_t> bytes, const Task& task, RolloutPool& pool) {
+Certification certify(std::span<const std::uint8_t> bytes, const Task& task, RolloutPool& pool,
+                      CertificationExtent extent) {
   const DecodedPlan decoded = decode_plan(bytes);
   if (!decoded.plan) {
     throw InputError("plan: byte " + std::to_string(decoded.offset) + ", " + decoded.field + ": " +
@@ -184,17 +198,25 @@ Certification certify(std::span<const std::uint8_t> bytes, const Task& task, Rol
   for (const CertificationVariant& variant : certification_variants(task, plan)) {
     certification.runs.push_back({variant, std::vector<Chain>(particles), false, {}});
   }
-  pool.run(certification.runs.size() * particles, [&](Rollout& rollout, std::size_t i) {
-    VariantRun& run = certification.runs[i / particles];
-    Particle start = belief.particles[i % particles];
-    start.physics.friction = run.variant.friction.value_or(start.physics.friction);
-    start.physics.oversize_m = run.variant.oversize_m.value_or(start.physics.oversize_m);
-    start.physics.latency_s = run.variant.latency_s.value_or(start.physics.latency_s);
-    run.chains[i % particles] = run_chain(rollout, plan, start, run.variant.step_us);
-  });
   const std::size_t last_step = plan.steps.empty() ? 0 : plan.steps.size() - 1;
-  for (VariantRun& run : certification.runs) {
-    judge(run, certification.runs.front(), task, last_step);
+  const auto run_from = [&](std::size_t first, std::size_t end) {
+    pool.run((end - first) * particles, [&](Rollout& rollout, std::size_t i) {
+      VariantRun& run = certification.runs[first + i / particles];
+      Particle start = belief.particles[i % particles];
+      start.physics.friction = run.variant.friction.value_or(start.physics.friction);
+      start.physics.oversize_m = run.variant.oversize_m.value_or(start.physics.oversize_m);
+      start.physics.latency_s = run.variant.latency_s.value_or(start.physics.latency_s);
+      run.chains[i % particles] = run_chain(rollout, plan, start, run.variant.step_us);
+    });
+    for (std::size_t i = first; i < end; ++i) {
+      judge(certification.runs[i], certification.runs.front(), task, last_step);
+    }
+  };
+  run_from(0, 1);
+  if (extent == CertificationExtent::kToFirstRefutation && !certification.runs.front().holds) {
+    certification.runs.resize(1);
+  } else {
+    run_from(1, certification.runs.size());
   }
   certification.cost = cost_of(certification.runs.front().chains, task);
   return certification;

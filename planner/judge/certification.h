@@ -52,14 +52,20 @@ struct Certification {
   [[nodiscard]] const VariantRun* refuting() const;
 };
 
+enum class CertificationExtent : std::uint8_t {
+  kAll,
+  kToFirstRefutation,  ///< nothing else is run where the plan does not even hold as planned
+};
+
 /// Decodes the bytes and runs the plan's own transitions, for the particles that its method plans
 /// for. A variant holds where every particle's chain is done at the goal, all of them within its
-/// tolerances. At half the integration step every move must also end as in the first variant,
-/// within 0.5 mm or 0.2 degrees; in other physics a move may end otherwise, as long as the plan
-/// goes on from there to the goal.
+/// tolerances. At half the integration step every chain must also end as in the first variant,
+/// within 0.5 mm and 0.2 degrees. On the way a move may end otherwise, as long as the plan goes on
+/// from there to the goal.
 /// @throws InputError where the bytes are no plan, or not one of this task
 [[nodiscard]] Certification certify(std::span<const std::uint8_t> bytes, const Task& task,
-                                    RolloutPool& pool);
+                                    RolloutPool& pool,
+                                    CertificationExtent extent = CertificationExtent::kAll);
 
 /// The start of the task that a plan was made for.
 /// @throws InputError where there is none of that name, or it moved

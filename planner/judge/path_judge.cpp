@@ -111,8 +111,9 @@ Judgement PathJudge::estimated(Plan plan, Certification certification, const Ext
 }
 
 Certification PathJudge::certified(const Plan& plan) {
-  Certification result = timed(now_s_, effort_.certification_s,
-                               [&] { return certify(encode_plan(plan), task_, pool_); });
+  Certification result = timed(now_s_, effort_.certification_s, [&] {
+    return certify(encode_plan(plan), task_, pool_, CertificationExtent::kToFirstRefutation);
+  });
   for (const VariantRun& run : result.runs) {
     for (const Chain& chain : run.chains) effort_.certification_moves += chain.steps.size();
   }

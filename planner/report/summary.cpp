@@ -151,6 +151,8 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
       "%zu refuted paths\n",
       report.expansions, report.expansions_first, report.states, report.guides,
       report.refusals.size());
+  if (!report.guide.empty())
+    text += "way: the guide " + report.guide + ", followed to the letter\n";
   text += format(
       "simulated moves: %llu attractors, %llu search (%llu known), %llu certification, "
       "%llu validation\n",
@@ -183,6 +185,7 @@ std::string statistics_json(const PlanReport& report, const Task& task) {
   json["reason"] = report.reason;
   json["method"] = to_string(report.method);
   json["guides"] = report.guides;
+  json["guide"] = report.guide;
   json["states"] = report.states;
   json["expansions"] = report.expansions;
   json["expansions_first"] = report.expansions_first;

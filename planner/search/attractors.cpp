@@ -6,10 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
+#include "planner/search/free_legs.h"
 #include "planner/search/goal_attractors.h"
 #include "planner/search/guide_moves.h"
+#include "planner/search/push_places.h"
 #include "planner/search/touch_places.h"
 #include "shared/base/random.h"
 
@@ -20,8 +23,6 @@ namespace {
 constexpr std::size_t kMaxGuides = 2;
 // How far beyond w2 times the anchor a guide may begin: not at all.
 constexpr double kWithinAnchor = 0.98;
-// How far off a face the nearest particle begins to push.
-constexpr double kOffFace_m = 5e-3;
 // A sample that collides is drawn again, this often.
 constexpr int kAttempts = 20;
 // Every order of contacts is tried, so there are not to be too many.
@@ -113,7 +114,7 @@ class GuideSearch {
     Random random(kSampleSeed);
     for (std::size_t i = 0; i < task_.attractor_samples && !stopped(); ++i) {
       const Belief belief = drawn(random, rollout);
-      if (!belief.particles.empty()) push_once(belief, primitives_, known);
+      if (!belief.particles.empty()) push_once(belief, primitives_, known, rollout);
     }
     combine(known, seed_.uncertainty_m2, {});
   }
@@ -130,8 +131,8 @@ class GuideSearch {
     return mask;
   }
 
-  /// The cheapest guides, scaled.
-  [[nodiscard]] std::vector<Guide> take() {
+  /// Those that leave no more than the goal's uncertainty, or as little as any; the cheapest first.
+  void sort() {
     const auto cost = [&](const Guide& guide) { return foliated_heuristic(seed_, guide, task_); };
     const auto left_m2 = [](const Guide& guide) { return guide.contacts.back().uncertainty_m2; };
     double enough_m2 = std::numeric_limits<double>::infinity();
@@ -139,9 +140,16 @@ class GuideSearch {
     enough_m2 = std::max(enough_m2, task_.goal_uncertainty_m2);
     std::erase_if(found_, [&](const Guide& guide) { return left_m2(guide) > enough_m2; });
     std::stable_sort(found_.begin(), found_.end(), [&](const Guide& a, const Guide& b) {
-      return std::pair(edges(a), cost(a)) < std::pair(edges(b), cost(b));
+      return std::tuple(far(a), edges(a), cost(a)) < std::tuple(far(b), edges(b), cost(b));
     });
+    if (found_.size() > kCandidatesMax) found_.resize(kCandidatesMax);
+  }
+  [[nodiscard]] const std::vector<Guide>& found() const { return found_; }
+
+  /// The cheapest of the sorted guides, scaled.
+  [[nodiscard]] std::vector<Guide> take() {
     if (found_.size() > kMaxGuides) found_.resize(kMaxGuides);
+    const auto cost = [&](const Guide& guide) { return foliated_heuristic(seed_, guide, task_); };
     const double allowed = kWithinAnchor * task_.w2 * anchor_heuristic(seed_, task_);
     for (Guide& guide : found_) {
       const double whole = cost(guide);
@@ -185,6 +193,12 @@ class GuideSearch {
     if (!task_.guide_moves) return 0;
     return std::count_if(guide.contacts.begin(), guide.contacts.end(),
                          [](const ContactAttractor& contact) { return !contact.face; });
+  }
+
+  /// How many of a guide's contacts no straight legs lead to from the start.
+  [[nodiscard]] static std::ptrdiff_t far(const Guide& guide) {
+    return std::count_if(guide.contacts.begin(), guide.contacts.end(),
+                         [](const ContactAttractor& contact) { return !contact.in_legs; });
   }
 
   /// Along some axis, of a single move.
@@ -250,37 +264,44 @@ class GuideSearch {
         const double enough_m = 0.5 * size_m.norm() + seed_.spread.head<3>().maxCoeff();
         for (const TouchPlace& side : touch_places(shape, axis, sign_of(push), enough_m, start_m)) {
           const Belief belief = opposite(side, push, part, rollout);
-          if (!belief.particles.empty()) push_once(belief, {push}, known);
+          if (!belief.particles.empty()) push_once(belief, {push}, known, rollout);
         }
       }
     }
   }
 
-  /// The start's spread before a place on a side; empty where the part would not fit there.
+  /// The start's spread before a place on a side, with the part's middle or one of its ends over
+  /// it: the nearest to which a way leads, else the middle. Empty where the part would not fit
+  /// there.
   [[nodiscard]] Belief opposite(const TouchPlace& side, const Primitive& push,
                                 const Eigen::AlignedBox3d& part, Rollout& rollout) const {
-    const int axis = axis_of(push);
-    Pose place = seed_.mean;
-    for (int other = 0; other < 3; ++other) {
-      if (!has(task_.coordinates, other)) continue;
-      place.position_m[other] = side.at_m[other] - part.center()[other];
+    FreeLegs legs(task_, seed_.mean, rollout);
+    const PartBefore before{part, seed_, axis_of(push), sign_of(push)};
+    for (const Pose& place : places_before(side, before, task_)) {
+      if (out_of_reach(seed_.mean, place) || !legs.to(seed_, place)) continue;
+      Belief belief = spread_about(place, rollout);
+      if (!belief.particles.empty()) return belief;
     }
-    const double off_m = 0.5 * part.sizes()[axis] + seed_.spread[axis] + kOffFace_m;
-    place.position_m[axis] -= sign_of(push) * off_m;
-    return out_of_reach(seed_.mean, place) ? Belief{} : spread_about(place, rollout);
+    const Pose middle = middle_before(side, before, task_);
+    return out_of_reach(seed_.mean, middle) ? Belief{} : spread_about(middle, rollout);
   }
 
   /// Adds the contacts that each of these pushes makes.
   void push_once(const Belief& belief, const std::vector<Primitive>& pushes,
-                 std::array<std::vector<ContactAttractor>, 6>& known) {
+                 std::array<std::vector<ContactAttractor>, 6>& known, Rollout& rollout) {
     const Pose via = summarise(belief, task_).mean;
+    const bool in_legs = FreeLegs(task_, seed_.mean, rollout).to(seed_, via).has_value();
     for (Pushed& pushed : push_together(belief, pushes)) {
       ContactAttractor& contact = pushed.contact;
       contact.via = via;
+      contact.in_legs = in_legs;
       auto& of_axis = known[static_cast<std::size_t>(contact.axis)];
       const auto same = find_known(contact, of_axis);
       if (same != of_axis.end()) {
-        if (contact.spread < same->spread) *same = contact;
+        const auto worth = [](const ContactAttractor& of) {
+          return std::pair(!of.in_legs, of.spread);
+        };
+        if (worth(contact) < worth(*same)) *same = contact;
       } else if (of_axis.size() < kMaxContactsAnAxis) {
         of_axis.push_back(contact);
       }
@@ -349,7 +370,10 @@ Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngin
   if (!search.certain()) search.look_around(rollout);
 
   const CoordinateMask unsettled = search.unsettled();
-  Attractors found{search.take(), goal_attractors(task, start, succ), unsettled};
+  search.sort();
+  std::vector<Guide> candidates = search.found();
+  Attractors found{search.take(), std::move(candidates), goal_attractors(task, start, succ),
+                   unsettled};
   if (found.goals.size() > 1 && !found.guides.empty()) {
     Guide through = found.guides.front();
     through.goals.insert(through.goals.begin(), found.goals.back());

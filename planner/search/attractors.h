@@ -11,8 +11,12 @@
 
 namespace tenon::planner {
 
+inline constexpr std::size_t kCandidatesMax = 24;
+
 struct Attractors {
   std::vector<Guide> guides;
+  /// What they were chosen from, the most promising first and at most kCandidatesMax.
+  std::vector<Guide> candidates;
   /// Goal attractors, which the search may move to straight: the goal, and the mouth of a hole.
   std::vector<Pose> goals;
   /// Uncertain coordinates along which no guide has a contact: nothing that was pushed against

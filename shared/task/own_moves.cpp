@@ -9,6 +9,8 @@ namespace {
 constexpr double kStepOverReach = 1.2;
 constexpr double kLongestPush_m = 10.0;
 constexpr std::size_t kSamples = 60;
+// A guide that leads past several contacts costs many times what the straight way does.
+constexpr double kGuideWeight = 30.0;
 
 void extend(Eigen::AlignedBox3d& box, const Shape& shape, const Pose& at) {
   // A ball around the shape, whichever way it stands.
@@ -38,6 +40,7 @@ void derive_moves(Task& task) {
   task.direct_reach_m = task.long_step_m;
   task.guide_moves = true;
   task.attractor_samples = kSamples;
+  task.w2 = kGuideWeight;
   task.move_weight = task.distance_weight_per_m * task.goal_tolerance_m;
 }
 

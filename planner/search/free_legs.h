@@ -1,0 +1,39 @@
+#pragma once
+// Ways through free space, for a tool of which only the spread about its mean is known. Asks for
+// collisions, simulates nothing. One thread.
+
+#include <optional>
+#include <vector>
+
+#include "planner/belief/belief_summary.h"
+#include "shared/ports/rollout.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+class FreeLegs {
+ public:
+  /// @param clear a pose known to be free, above or beside everything: detours go by its
+  /// coordinates
+  FreeLegs(const Task& task, const Pose& clear, Rollout& rollout)
+      : task_(task), clear_(clear), rollout_(rollout) {}
+
+  /// At most four straight legs from the belief's mean to a place, task axes, m and rad, of which
+  /// none brings any corner of the spread into a collision; as few as there are, then as short.
+  /// Empty: none lead there.
+  [[nodiscard]] std::optional<std::vector<Vector6>> to(const BeliefSummary& belief,
+                                                       const Pose& place);
+
+ private:
+  using Legs = std::vector<Vector6>;
+
+  [[nodiscard]] std::vector<Legs> candidates(const Vector6& way, const Pose& from) const;
+  [[nodiscard]] bool free(const BeliefSummary& belief, const Legs& legs, double margin_m);
+  [[nodiscard]] bool free_at(const Pose& mean, const Vector3& half_m);
+
+  const Task& task_;
+  Pose clear_;
+  Rollout& rollout_;
+};
+
+}  // namespace tenon::planner

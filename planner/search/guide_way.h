@@ -1,0 +1,27 @@
+#pragma once
+// A guide followed to the letter: through free space to where a push begins, the push, and on to
+// the next; then over the goal and in. No search: what a person would do who knew the guide. One
+// thread at a time.
+
+#include <optional>
+#include <vector>
+
+#include "planner/belief/successor.h"
+#include "planner/search/guide.h"
+#include "shared/ports/rollout.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+/// The moves that bring a belief to the goal by way of a guide's contacts, each value as a plan
+/// holds it; empty where one of them fails, or all of them do not lead there. Contacts that were
+/// met while another coordinate was still uncertain are met once more where that takes it.
+/// @param clear a pose known to be free, above or beside everything
+/// @param rollout asked for collisions only
+[[nodiscard]] std::optional<std::vector<Vector6>> follow_guide(const Guide& guide, const Task& task,
+                                                               const Belief& start,
+                                                               const Pose& clear,
+                                                               SuccessorEngine& succ,
+                                                               Rollout& rollout);
+
+}  // namespace tenon::planner
