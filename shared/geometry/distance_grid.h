@@ -97,7 +97,8 @@ std::optional<double> DistanceGrid::at_least_m(const Vector3& point_m, const Exa
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<Eigen::Index>(axis);
     if (!(scaled[i] >= 0.0 && scaled[i] < last_[axis])) return std::nullopt;
-    const auto nearest = static_cast<std::size_t>(scaled[i] + 0.5);
+    const auto low = static_cast<std::size_t>(scaled[i]);
+    const std::size_t nearest = scaled[i] - static_cast<double>(low) < 0.5 ? low : low + 1;
     brick += nearest / kEdge * stride_[axis];
     within = within * kEdge + nearest % kEdge;
     node_m[i] = low_m_[i] + static_cast<double>(nearest) * spacing_m_;
