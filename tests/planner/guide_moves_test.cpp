@@ -16,15 +16,6 @@
 namespace tenon::planner {
 namespace {
 
-Task own_room_task() {
-  Task task = room_task();
-  task.environment = {{"floor", Shape::Kind::kBox, {1.0, 0.8, 0.1}, {}}};
-  task.held = {{"point", Shape::Kind::kBox, {0.01, 0.01, 0.01}, {}}};
-  task.motion.timeout_us = 30'000'000;
-  derive_moves(task);
-  return task;
-}
-
 BeliefSummary belief_at(double x_m, double y_m, double spread_m) {
   BeliefSummary belief;
   belief.mean.position_m = {x_m, y_m, 0.0};

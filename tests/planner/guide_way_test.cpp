@@ -12,7 +12,6 @@
 #include "planner/belief/rollout_pool.h"
 #include "planner/search/free_legs.h"
 #include "planner/search_moves.h"
-#include "shared/task/own_moves.h"
 #include "tests/planner/room_task.h"
 
 namespace tenon::planner {
@@ -39,15 +38,6 @@ class Block final : public Rollout {
   Vector3 low_m_;
   Vector3 high_m_;
 };
-
-Task own_room_task() {
-  Task task = room_task();
-  task.environment = {{"floor", Shape::Kind::kBox, {1.0, 0.8, 0.1}, {}}};
-  task.held = {{"point", Shape::Kind::kBox, {0.01, 0.01, 0.01}, {}}};
-  task.motion.timeout_us = 60'000'000;
-  derive_moves(task);
-  return task;
-}
 
 Pose at(double x_m, double y_m, double z_m) {
   return {{x_m, y_m, z_m}, Eigen::Quaterniond::Identity()};
@@ -118,8 +108,8 @@ TEST(FreeLegs, LeaveRoomForTheSpread) {
   EXPECT_TRUE(stays_free(wall, from, *around));
 }
 
-struct Room {
-  explicit Room(const Task& of)
+struct FollowedRoom {
+  explicit FollowedRoom(const Task& of)
       : task(of),
         rollout(room()),
         pool(rollout, 1),
@@ -150,7 +140,7 @@ ContactAttractor wall(int axis, int sign, double at_m) {
 }
 
 TEST(FollowGuide, TouchesWhatItNamesAndEndsAtTheGoal) {
-  Room room(own_room_task());
+  FollowedRoom room(own_room_task());
   const Guide guide{{wall(0, -1, -0.5), wall(1, -1, -0.4)}, {room.task.goal}, 1.0};
   const auto way = room.follow(guide);
   ASSERT_TRUE(way);
@@ -171,7 +161,7 @@ TEST(FollowGuide, TouchesWhatItNamesAndEndsAtTheGoal) {
 }
 
 TEST(FollowGuide, SaysSoWhereItDoesNotLeadToTheGoal) {
-  Room room(own_room_task());
+  FollowedRoom room(own_room_task());
   // y stays as uncertain as it was.
   EXPECT_FALSE(room.follow({{wall(0, -1, -0.5)}, {room.task.goal}, 1.0}));
   // The push would begin in the wall.

@@ -1,6 +1,7 @@
 #pragma once
 // Tasks for WallRollout: a point that is to find its place in a room of 1.0 x 0.8 m.
 
+#include "shared/task/own_moves.h"
 #include "shared/task/task.h"
 #include "tests/planner/wall_rollout.h"
 
@@ -26,6 +27,16 @@ inline Task room_task() {
   start.sigma.head<2>() << 0.03, 0.03;
   task.starts = {start};
   task.goal.position_m = {0.17, 0.12, 0.0};
+  return task;
+}
+
+/// The room as a task that brings no primitives: its moves follow from its sizes.
+inline Task own_room_task() {
+  Task task = room_task();
+  task.environment = {{"floor", Shape::Kind::kBox, {1.0, 0.8, 0.1}, {}}};
+  task.held = {{"point", Shape::Kind::kBox, {0.01, 0.01, 0.01}, {}}};
+  task.motion.timeout_us = 60'000'000;
+  derive_moves(task);
   return task;
 }
 
