@@ -13,6 +13,7 @@ install(TARGETS ${mains} RUNTIME COMPONENT runtime)
 set(data ${CMAKE_INSTALL_DATADIR}/tenon)
 install(DIRECTORY planner/tasks DESTINATION ${data}/planner COMPONENT runtime)
 install(DIRECTORY hw/cells hw/drives hw/robots DESTINATION ${data}/hw COMPONENT runtime)
+install(DIRECTORY hw/sensors DESTINATION ${data}/hw COMPONENT runtime FILES_MATCHING PATTERN "*.yaml")
 install(DIRECTORY sim/experiments DESTINATION ${data}/sim COMPONENT runtime FILES_MATCHING PATTERN "*.yaml"
         PATTERN results EXCLUDE)
 install(DIRECTORY shared/config/schemas DESTINATION ${data}/shared/config COMPONENT runtime)

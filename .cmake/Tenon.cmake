@@ -314,7 +314,8 @@ function(tenon_plan name task)
   if(arg_CELL)
     list(APPEND options --cell ${PROJECT_SOURCE_DIR}/${arg_CELL})
     get_filename_component(folder ${PROJECT_SOURCE_DIR}/${arg_CELL} DIRECTORY)
-    file(GLOB robots CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/hw/robots/*/* ${folder}/*.yaml)
+    file(GLOB robots CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/hw/robots/*/* ${PROJECT_SOURCE_DIR}/hw/sensors/*.yaml
+         ${folder}/*.yaml)
     list(APPEND inputs ${robots})
   endif()
   # However busy the machine is: the wall limit is for people, and no plan may depend on it.

@@ -19,8 +19,8 @@ constexpr double kPeakShare = 0.8;
 constexpr double kContactSpeedMin_mps = 2e-3;
 constexpr double kNoiseDeviations = 5.0;
 constexpr double kNoiseMargin = 1.05;
-// A contact is confirmed by three samples in a row, however long the cycle.
-constexpr std::uint32_t kDebounceCycles = 2;
+// A contact is confirmed by three samples in a row, however long they take.
+constexpr std::uint32_t kDebouncePeriods = 2;
 constexpr double kTimeoutMax_us = 600e6;
 
 class Fitting {
@@ -48,10 +48,11 @@ class Fitting {
 
   void fit_debounce() {
     std::uint32_t& debounce_us = fit_.task.motion.thresholds.debounce_us;
-    const std::uint32_t least_us = kDebounceCycles * cell_.robot.cycle_us;
+    const auto sample_cycles = static_cast<std::uint32_t>(cell_.robot.sensor.cycles_per_sample);
+    const std::uint32_t least_us = kDebouncePeriods * sample_cycles * cell_.robot.cycle_us;
     if (debounce_us >= least_us) return;
-    note(format("debounce %g -> %g ms: at least two cycles of %g ms", 1e-3 * debounce_us,
-                1e-3 * least_us, 1e3 * loop_.cycle_s));
+    note(format("debounce %g -> %g ms: at least two samples of %g ms", 1e-3 * debounce_us,
+                1e-3 * least_us, 1e3 * sample_period_s(cell_.robot)));
     debounce_us = least_us;
   }
 
@@ -121,11 +122,12 @@ class Fitting {
                  lowered_mps, kPeakShare, cell_.force_fault_N, force_on_N, loop_.stiffness_Npm,
                  seconds, kContactSpeedMin_mps));
     }
-    note(format(
-        "contact speed %g -> %.4g m/s: the peak force F_on + k_e v (2 (n + 2) T + tau_arm + M / D) "
-        "= %g + %g * v * %.4g was %.3g N, now %g of the fault at %g N",
-        speeds.contact_mps, lowered_mps, force_on_N, loop_.stiffness_Npm, seconds, peak_N,
-        kPeakShare, cell_.force_fault_N));
+    note(
+        format("contact speed %g -> %.4g m/s: the peak force F_on + k_e v ((2 n + m + 3) T + "
+               "tau_arm + M / D) "
+               "= %g + %g * v * %.4g was %.3g N, now %g of the fault at %g N",
+               speeds.contact_mps, lowered_mps, force_on_N, loop_.stiffness_Npm, seconds, peak_N,
+               kPeakShare, cell_.force_fault_N));
     stretch_timeout(speeds.contact_mps / lowered_mps);
     speeds.contact_mps = lowered_mps;
   }

@@ -38,8 +38,9 @@ class Checker {
   void check_latency() {
     if (loop_.latency_s() <= plan_.latency_max_s * kPlanRounding) return;
     refuse(format(
-        "latency (n + 1/2) T + tau_arm = (%d + 0.5) * %g + %g = %g s, the plan allows at most %g s",
-        loop_.delay_cycles, loop_.cycle_s, loop_.lag_s, loop_.latency_s(), plan_.latency_max_s));
+        "latency (n + m/2) T + tau_arm = (%d + %g) * %g + %g = %g s, the plan allows at most %g s",
+        loop_.delay_cycles, 0.5 * loop_.sample_cycles, loop_.cycle_s, loop_.lag_s,
+        loop_.latency_s(), plan_.latency_max_s));
   }
 
   void check_compliance() {
@@ -112,7 +113,7 @@ class Checker {
                                               (rotary_.blind_s() + law_s);
     if (!(peak_Nm <= cell_.torque_fault_Nm)) {
       refuse(format(
-          "parameter set %d: peak torque T_on + k_e w (2 (n + 2) T + tau_arm + I / D) = %g + "
+          "parameter set %d: peak torque T_on + k_e w ((2 n + m + 3) T + tau_arm + I / D) = %g + "
           "%g * %g * %g = %g Nm, must be at most torque_fault_Nm = %g Nm",
           static_cast<int>(index), torque_on_Nm, rotary_.stiffness_Npm, set.speeds.contact_radps,
           rotary_.blind_s() + law_s, peak_Nm, cell_.torque_fault_Nm));
@@ -165,13 +166,13 @@ class Checker {
     const double contact_mps = set.speeds.contact_mps;
     const double peak_N = peak_force_N(loop_, c, force_on_N, contact_mps);
     if (!(peak_N <= cell_.force_fault_N)) {
-      refuse(
-          format("parameter set %d: peak force F_on + k_e v (2 (n + 2) T + tau_arm + M / D) = %g + "
-                 "%g * %g "
-                 "* (%g + %g + %g) = %g N, must be at most force_fault_N = %g N",
-                 static_cast<int>(index), force_on_N, loop_.stiffness_Npm, contact_mps,
-                 loop_.blind_s() - loop_.lag_s, loop_.lag_s, c.mass_kg / c.damping_Nspm, peak_N,
-                 cell_.force_fault_N));
+      refuse(format(
+          "parameter set %d: peak force F_on + k_e v ((2 n + m + 3) T + tau_arm + M / D) = %g + "
+          "%g * %g "
+          "* (%g + %g + %g) = %g N, must be at most force_fault_N = %g N",
+          static_cast<int>(index), force_on_N, loop_.stiffness_Npm, contact_mps,
+          loop_.blind_s() - loop_.lag_s, loop_.lag_s, c.mass_kg / c.damping_Nspm, peak_N,
+          cell_.force_fault_N));
     }
     const double noise_N = cell_.robot.sensor.force_noise_N;
     if (force_on_N * kPlanRounding < 5.0 * noise_N) {

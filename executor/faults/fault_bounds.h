@@ -6,8 +6,8 @@ namespace tenon::executor {
 
 inline constexpr int kFeedbackMissesMax = 10;    ///< cycles in a row without a joint's answer
 inline constexpr double kWrenchAgeMax_s = 0.05;  ///< without a new wrench
-inline constexpr int kWrenchCyclesMin = 8;       ///< the age allowed is at least so many cycles
-inline constexpr int kBlindCyclesMin = 10;       ///< likewise
+inline constexpr int kWrenchSamplesMin = 8;      ///< the age allowed is at least so many samples
+inline constexpr int kBlindSamplesMin = 10;      ///< likewise
 inline constexpr double kBlindMax_s = 0.1;       ///< without a sample that guarded moves may see
 inline constexpr double kFollowingPatience_s = 0.02;  ///< 6066h of the drives: half
 inline constexpr double kEnableTimeout_s = 5.0;       ///< for the drives

@@ -82,10 +82,14 @@ constexpr FaultRow of_arm(ArmFaultKind kind, const char* detector, FaultBound bo
           .end_state = end_state};
 }
 
-// A sample is taken up to a cycle after what it tells, and the decision falls in its cycle.
+// An answer is taken up to a cycle after what it tells, and the decision falls in its cycle.
 constexpr FaultBound kAtOnce{.cycles = 2};
+// The same of a wrench.
+constexpr FaultBound kAtNextSample{.cycles = 1, .samples = 1};
 // More than five in a row (hw/arm), told to the executor in the cycle after.
 constexpr FaultBound kMissing{.cycles = 8};
+constexpr FaultBound kMissingSamples{.cycles = 2, .samples = 6};
+constexpr FaultBound kTareTried{.cycles = 2, .samples = kTareTries * kTareSamples};
 
 constexpr std::array kTable = {
     ended(EndReason::kPlanDone, "plan_done", "plan runner"),
@@ -93,12 +97,12 @@ constexpr std::array kTable = {
     ended(EndReason::kStopRequested, "stop_requested", "signal", EndManner::kToolRamp),
     ended(EndReason::kNotAtStart, "not_at_start", "tool's pose after the tare"),
     fault(EndReason::kTareUnsteady, "tare_unsteady", "tare: deviation of its samples, five times",
-          {.cycles = kTareTries * kTareSamples + 2}, "the tare's first sample", EndManner::kHold),
+          kTareTried, "the tare's first sample", EndManner::kHold),
     fault(EndReason::kTareMoving, "tare_moving", "tare: way of every joint", kAtOnce,
           "the way that is too far", EndManner::kHold),
     fault(EndReason::kContactOnApproach, "contact_on_approach",
-          "wrench beyond the plan's on-thresholds", {.cycles = kTouchSamples + 1}, "the touch",
-          EndManner::kToolRamp),
+          "wrench beyond the plan's on-thresholds", {.cycles = 1, .samples = kTouchSamples},
+          "the touch", EndManner::kToolRamp),
     fault(EndReason::kUnreachable, "unreachable", "inverse kinematics of every setpoint",
           {.cycles = 1}, "the setpoint", EndManner::kJointRamp),
     fault(EndReason::kJointLimit, "joint_limit", "every setpoint, with the way to rest",
@@ -106,11 +110,12 @@ constexpr std::array kTable = {
     fault(EndReason::kJointSpeed, "joint_speed", "every setpoint", {.cycles = 1}, "the setpoint",
           EndManner::kJointRamp),
     fault(EndReason::kForceFault, "force_fault",
-          "every wrench since the tare; every force as its frame comes", kAtOnce, "the force"),
-    fault(EndReason::kTorqueFault, "torque_fault", "every wrench since the tare", kAtOnce,
+          "every wrench since the tare; every force as its frame comes", kAtNextSample,
+          "the force"),
+    fault(EndReason::kTorqueFault, "torque_fault", "every wrench since the tare", kAtNextSample,
           "the torque"),
-    fault(EndReason::kSensorSaturated, "sensor_saturated", "every wrench", kAtOnce),
-    fault(EndReason::kSensorNotFinite, "sensor_not_finite", "every wrench", kAtOnce),
+    fault(EndReason::kSensorSaturated, "sensor_saturated", "every wrench", kAtNextSample),
+    fault(EndReason::kSensorNotFinite, "sensor_not_finite", "every wrench", kAtNextSample),
     of_arm(ArmFaultKind::kNoAnswer, "bring-up, before anything has power", {.time_s = 1.0},
            "the request"),
     of_arm(ArmFaultKind::kConfiguration, "bring-up, before anything has power", {.time_s = 1.0},
@@ -125,10 +130,10 @@ constexpr std::array kTable = {
            "the drive's leaving operation enabled"),
     of_arm(ArmFaultKind::kFeedbackMissing, "more than 5 cycles in a row without a joint's answer",
            kMissing),
-    of_arm(ArmFaultKind::kSensorStale, "more than 5 cycles in a row without a new, whole wrench",
-           kMissing),
-    of_arm(ArmFaultKind::kSensorInvalid, "a wrench at the end of its range, EMCY of the sensor",
-           kAtOnce),
+    of_arm(ArmFaultKind::kSensorStale, "more than 5 samples in a row without a new, whole wrench",
+           kMissingSamples),
+    of_arm(ArmFaultKind::kSensorInvalid,
+           "a wrench at the end of its range, EMCY or status of the sensor", kAtNextSample),
     of_arm(ArmFaultKind::kBusDown, "transport, every cycle", kAtOnce, kFromFault,
            EndState::kOffByDrives),
     of_arm(ArmFaultKind::kBusOff, "transport, every cycle", kAtOnce, kFromFault,
@@ -150,7 +155,7 @@ constexpr std::array kTable = {
     fault(EndReason::kFeedbackMissing, "feedback_missing",
           "cycles in a row without a joint's answer", {.cycles = kFeedbackMissesMax + 2}),
     fault(EndReason::kWrenchMissing, "wrench_missing", "age of the wrench",
-          {.cycles = kWrenchCyclesMin + 2, .time_s = kWrenchAgeMax_s}),
+          {.cycles = 2, .samples = kWrenchSamplesMin, .time_s = kWrenchAgeMax_s}),
     fault(EndReason::kOverruns, "overruns",
           "leaky bucket of late cycles; one in twenty may be late", {.cycles = kLateCyclesMost + 1},
           "the first of so many late cycles"),
@@ -171,18 +176,18 @@ constexpr std::array kTable = {
           "every joint against all that it was commanded within three lags",
           {.cycles = 2, .time_s = kFollowingPatience_s}, "an error beyond its bound"),
     fault(EndReason::kBlind, "blind", "age of the last sample that guarded moves may see",
-          {.cycles = kBlindCyclesMin + 2, .time_s = kBlindMax_s}),
+          {.cycles = 2, .samples = kBlindSamplesMin, .time_s = kBlindMax_s}),
     fault(EndReason::kTareOffset, "tare_offset",
-          "mean of the tare against the cell's sensor_bias and payload",
-          {.cycles = kTareTries * kTareSamples + 2}, "the tare's first sample", EndManner::kHold),
+          "mean of the tare against the cell's sensor_bias and payload", kTareTried,
+          "the tare's first sample", EndManner::kHold),
     ended(EndReason::kNotAtGoal, "not_at_goal", "tool's pose at the plan's end against its goal"),
     fault(EndReason::kWrenchFrozen, "wrench_frozen",
           "every wrench against the one before, while its counter runs",
-          {.cycles = kFrozenSamples + 2}),
+          {.cycles = 2, .samples = kFrozenSamples}),
     fault(EndReason::kTareDrift, "tare_drift",
           "mean wrench of later samples at rest in free air against the first's: the tare's "
           "halves, five times, and where a step waits",
-          {.cycles = kTareTries * kTareSamples + 2}, "the first sample at rest", EndManner::kHold),
+          kTareTried, "the first sample at rest", EndManner::kHold),
     fault(EndReason::kEncoderJump, "encoder_jump",
           "every joint's way against its commands and its full speed", kAtOnce),
     fault(EndReason::kZeroMoved, "zero_moved",
@@ -214,8 +219,8 @@ static_assert(every_fault_of_the_arm_has_a_row());
 static_assert(kTable.size() <= 64, "FaultMask has a bit for each row");
 
 constexpr bool is_bounded(const FaultBound& bound) {
-  return bound.cycles > 0 || bound.time_s > 0.0 || bound.heartbeat_periods > 0 ||
-         bound.heartbeat_timeouts > 0;
+  return bound.cycles > 0 || bound.samples > 0 || bound.time_s > 0.0 ||
+         bound.heartbeat_periods > 0 || bound.heartbeat_timeouts > 0;
 }
 
 void append(std::string& text, int count, const char* what) {
@@ -255,7 +260,8 @@ std::optional<std::int64_t> bound_cycles(const FaultRow& row, const Robot& robot
   const double waited_s = row.bound.time_s +
                           1e-3 * row.bound.heartbeat_periods * robot.heartbeat_ms +
                           1e-3 * row.bound.heartbeat_timeouts * robot.heartbeat_timeout_ms;
-  return row.bound.cycles + static_cast<std::int64_t>(std::ceil(1e6 * waited_s / robot.cycle_us));
+  return row.bound.cycles + std::int64_t{row.bound.samples} * robot.sensor.cycles_per_sample +
+         static_cast<std::int64_t>(std::ceil(1e6 * waited_s / robot.cycle_us));
 }
 
 std::string full_name(const FaultRow& row) {
@@ -268,6 +274,7 @@ std::string to_string(const FaultBound& bound) {
   append(text, bound.heartbeat_timeouts, "heartbeat timeout");
   append(text, bound.heartbeat_periods, "heartbeat period");
   if (bound.time_s > 0.0) text += format("%s%g s", text.empty() ? "" : " and ", bound.time_s);
+  append(text, bound.samples, "sample");
   append(text, bound.cycles, "cycle");
   return text;
 }

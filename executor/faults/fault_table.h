@@ -20,6 +20,7 @@ namespace tenon::executor {
 /// How long a fault may last before it is noticed, counted from where `since` of its row says.
 struct FaultBound {
   int cycles = 0;             ///< 0, and nothing else: it is no fault, or not bounded by time
+  int samples = 0;            ///< periods of the force/torque sensor, besides
   double time_s = 0.0;        ///< besides
   int heartbeat_periods = 0;  ///< of the robot file, besides
   int heartbeat_timeouts = 0;

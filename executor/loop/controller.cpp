@@ -14,7 +14,7 @@ namespace {
 ZeroWatch::Parameters zero_parameters(const Plan& plan, const Cell& cell, double window_s) {
   constexpr int kSamplesLeast = 20;
   ZeroWatch::Parameters p;
-  p.samples = std::max(kSamplesLeast, static_cast<int>(1e6 * window_s / cell.robot.cycle_us));
+  p.samples = std::max(kSamplesLeast, static_cast<int>(window_s / sample_period_s(cell.robot)));
   p.axes = plan.compliance.compliant_axes;
   const auto noise = SensorTare::parameters_for(cell.robot.sensor, kTareSamples);
   const double lever_m = compose(inverse(cell.X_FS), cell.X_FP).position_m.norm();

@@ -16,9 +16,10 @@ Supervision::Supervision(const Cell& cell, const ToolKinematics& kinematics,
       encoder_watch_(cell.robot) {
   // The arm counts a sensor's silence in cycles, and knows its node: where cycles are long, too, it
   // is to be heard first.
-  const double cycle_s = 1e-6 * cell.robot.cycle_us;
-  parameters_.wrench_age_max_s = std::max(parameters_.wrench_age_max_s, kWrenchCyclesMin * cycle_s);
-  parameters_.blind_max_s = std::max(parameters_.blind_max_s, kBlindCyclesMin * cycle_s);
+  const double sample_s = sample_period_s(cell.robot);
+  parameters_.wrench_age_max_s =
+      std::max(parameters_.wrench_age_max_s, kWrenchSamplesMin * sample_s);
+  parameters_.blind_max_s = std::max(parameters_.blind_max_s, kBlindSamplesMin * sample_s);
 }
 
 std::optional<Ending> Supervision::update(const ArmFeedback& feedback, bool following) {
@@ -84,7 +85,9 @@ std::optional<Ending> Supervision::take_wrench(const ArmFeedback& feedback) {
   if (distrusted_cycles_ > 0) --distrusted_cycles_;
   const bool blind = tared_ && !wrench_usable_;
   blind_s_ = blind ? blind_s_ + 1e-6 * cell_.robot.cycle_us : 0.0;
-  blind_cycles_ += blind ? 1 : 0;
+  // Between two samples of a slow sensor none is missed.
+  const double sample_s = sample_period_s(cell_.robot);
+  blind_cycles_ += blind_s_ > sample_s - 0.5e-6 * cell_.robot.cycle_us ? 1 : 0;
   if (!feedback.wrench_fresh || !known_) return std::nullopt;
   const bool frozen = frozen_watch_.update(feedback.wrench, feedback.wrench_counter);
   switch (wrench_.update(feedback.wrench, tool_)) {

@@ -23,8 +23,8 @@ class Supervision {
  public:
   struct Parameters {
     int feedback_misses_max = kFeedbackMissesMax;  ///< cycles in a row
-    double wrench_age_max_s = kWrenchAgeMax_s;     ///< at least kWrenchCyclesMin cycles
-    /// Without a sample that guarded moves may see; at least kBlindCyclesMin cycles.
+    double wrench_age_max_s = kWrenchAgeMax_s;     ///< at least kWrenchSamplesMin samples
+    /// Without a sample that guarded moves may see; at least kBlindSamplesMin samples.
     double blind_max_s = kBlindMax_s;
   };
 

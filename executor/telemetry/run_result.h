@@ -28,7 +28,7 @@ struct RunResult {
   std::vector<StepReport> steps;
   std::optional<Finding> finding;  ///< of an identification that has all its readings
   double duration_s = 0.0;         ///< of the cycles
-  std::uint64_t blind_cycles = 0;  ///< since the tare, in which guarded moves saw no sample
+  std::uint64_t blind_cycles = 0;  ///< since the tare, in which a sample that was due was not seen
   double peak_force_N = 0.0;
   double peak_torque_Nm = 0.0;
   CycleRunner::Statistics statistics;

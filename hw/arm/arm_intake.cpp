@@ -39,10 +39,9 @@ void ArmIntake::reset() noexcept {
 void ArmIntake::forget_freshness() noexcept {
   feedback_.joints_fresh = 0;
   feedback_.joints_off = 0;
-  wrench_intake_.forget_freshness();
 }
 
-void ArmIntake::open_cycle(std::int64_t now_ns, CanBus& bus) noexcept {
+std::optional<CanFrame> ArmIntake::open_cycle(std::int64_t now_ns, CanBus& bus) noexcept {
   // A wrench that came late is still the newest; a joint's late answer is not this cycle's.
   feedback_.wrench_fresh = wrench_late_;
   forget_freshness();
@@ -52,6 +51,7 @@ void ArmIntake::open_cycle(std::int64_t now_ns, CanBus& bus) noexcept {
   wrench_late_ = false;
   cycle_open_ = true;
   feedback_.sync_ns = now_ns;
+  return wrench_intake_.begin_cycle();
 }
 
 bool ArmIntake::close_cycle() noexcept {
@@ -62,21 +62,22 @@ bool ArmIntake::close_cycle() noexcept {
 
 bool ArmIntake::complete() const noexcept {
   return cycle_open_ && feedback_.joints_fresh == (1u << joints_.size()) - 1u &&
-         wrench_intake_.both_halves_seen();
+         wrench_intake_.answered();
 }
 
 int ArmIntake::drain(std::int64_t now_ns, CanBus& bus) noexcept {
   ReceivedFrame received;
   int taken = 0;
   while (taken < kMaxFramesPerCall && bus.receive(received)) {
-    take(received.frame, now_ns);
+    take_received(received, now_ns);
     ++taken;
   }
   return taken;
 }
 
-void ArmIntake::take(const CanFrame& frame, std::int64_t now_ns) noexcept {
-  if (take_process_data(frame)) {
+void ArmIntake::take_received(const ReceivedFrame& received, std::int64_t now_ns) noexcept {
+  const CanFrame& frame = received.frame;
+  if (take_process_data(received)) {
     return;
   }
   if (other_master_.sent(frame)) {
@@ -91,11 +92,12 @@ void ArmIntake::take(const CanFrame& frame, std::int64_t now_ns) noexcept {
   }
 }
 
-bool ArmIntake::take_process_data(const CanFrame& frame) noexcept {
+bool ArmIntake::take_process_data(const ReceivedFrame& received) noexcept {
+  const CanFrame& frame = received.frame;
   if (frame.extended || frame.remote) {
     return false;
   }
-  if (take_wrench_frame(frame)) {
+  if (take_wrench_frame(received)) {
     return true;
   }
   const auto ids = std::span(feedback_ids_).first(joints_.size());
@@ -117,14 +119,14 @@ bool ArmIntake::take_process_data(const CanFrame& frame) noexcept {
   return true;
 }
 
-bool ArmIntake::take_wrench_frame(const CanFrame& frame) noexcept {
+bool ArmIntake::take_wrench_frame(const ReceivedFrame& received) noexcept {
   const std::uint64_t torn_before = wrench_intake_.torn();
-  switch (wrench_intake_.take(frame)) {
+  switch (wrench_intake_.take(received.frame, received.time_ns)) {
     case WrenchSource::Taken::kForeign:
       return false;
     case WrenchSource::Taken::kMalformed:
       ++counters_.malformed_frames;
-      supervision_.take_wrong_length(sensor_node_, frame.length);
+      supervision_.take_wrong_length(sensor_node_, received.frame.length);
       return true;
     case WrenchSource::Taken::kHalf:
       break;
@@ -133,7 +135,10 @@ bool ArmIntake::take_wrench_frame(const CanFrame& frame) noexcept {
   if (const auto& end = wrench_intake_.saturated()) {
     supervision_.raise(saturation_fault(sensor_node_, *end));
   }
-  counters_.late_frames += cycle_open_ ? 0 : 1;
+  if (wrench_intake_.unwell()) {
+    supervision_.raise(unwell_fault(sensor_node_, *wrench_intake_.unwell()));
+  }
+  counters_.late_frames += cycle_open_ || !wrench_intake_.can_be_late() ? 0 : 1;
   counters_.wrench_halves_torn += wrench_intake_.torn() - torn_before;
   if (wrench_intake_.sample()) take_wrench(*wrench_intake_.sample());
   return true;

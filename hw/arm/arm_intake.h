@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "hw/arm/arm_counters.h"
@@ -37,13 +38,16 @@ class ArmIntake {
 
   /// Forgets all that was heard.
   void reset() noexcept;
-  void open_cycle(std::int64_t now_ns, CanBus& bus) noexcept;
+  /// @return what the sensor is to be sent right after SYNC
+  [[nodiscard]] std::optional<CanFrame> open_cycle(std::int64_t now_ns, CanBus& bus) noexcept;
   /// @return frames taken
   int drain(std::int64_t now_ns, CanBus& bus) noexcept;
   /// Judges every force from now on, in its frame.
   void limit_force(const ForceLimit& limit) noexcept { limit_ = limit; }
-  /// A frame of the bus.
-  void take(const CanFrame& frame, std::int64_t now_ns) noexcept;
+  /// A frame of the bus that comes now.
+  void take(const CanFrame& frame, std::int64_t now_ns) noexcept {
+    take_received({frame, now_ns}, now_ns);
+  }
   /// False: none was open.
   bool close_cycle() noexcept;
 
@@ -56,8 +60,9 @@ class ArmIntake {
 
  private:
   void forget_freshness() noexcept;
-  [[nodiscard]] bool take_process_data(const CanFrame& frame) noexcept;
-  [[nodiscard]] bool take_wrench_frame(const CanFrame& frame) noexcept;
+  void take_received(const ReceivedFrame& received, std::int64_t now_ns) noexcept;
+  [[nodiscard]] bool take_process_data(const ReceivedFrame& received) noexcept;
+  [[nodiscard]] bool take_wrench_frame(const ReceivedFrame& received) noexcept;
   void judge_force(const Vector3& force_N) noexcept;
   void take_wrench(const WrenchIntake::Sample& sample) noexcept;
 

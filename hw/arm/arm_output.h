@@ -26,6 +26,8 @@ class ArmOutput {
   void begin(std::int64_t now_ns) noexcept { next_heartbeat_ns_ = now_ns; }
 
   void send_sync() noexcept;
+  /// What the sensor is asked by.
+  void send_request(const CanFrame& frame) noexcept { send(frame); }
   /// @param follow `position` (m or rad), else where each joint is. A joint that has not been heard
   /// of is sent nothing: nothing is known that could be a safe target.
   void send_setpoints(ArmRequest request, bool follow, const JointVector& position) noexcept;

@@ -29,11 +29,12 @@ ArmSupervision::ArmSupervision(const Robot& robot, std::span<const JointChannel>
       drives_(drives_of(robot)),
       sensor_node_(robot.sensor.node),
       heartbeat_timeout_ns_(robot.heartbeat_timeout_ms * kNanosecondsPerMillisecond),
-      counters_(counters) {
+      counters_(counters),
+      wrench_(robot.sensor) {
   for (const Joint& joint : robot.joints) {
     watch_.add(joint.node);
   }
-  watch_.add(sensor_node_);
+  if (sensor_node_ != 0) watch_.add(sensor_node_);
 }
 
 void ArmSupervision::reset() noexcept {
@@ -49,7 +50,8 @@ void ArmSupervision::begin(std::int64_t now_ns) noexcept {
   missing_cycles_.fill(0);
   warned_.fill(0);
   wrong_length_.fill(0);
-  stale_cycles_ = silent_cycles_ = refused_cycles_ = 0;
+  wrench_.reset();
+  silent_cycles_ = refused_cycles_ = 0;
   refused_ = false;
   send_failures_.reset();
   refusals_ = 0;
@@ -237,13 +239,11 @@ void ArmSupervision::check_feedback(const ArmFeedback& feedback) noexcept {
                     wrong_length_[i]);
     }
   }
-  if (feedback.wrench_fresh) {
-    stale_cycles_ = wrong_length_[joints_.size()] = 0;
-    return;
-  }
-  ++counters_.wrenches_missing;
-  if (++stale_cycles_ > kMissingCycles) {
-    raise_missing(ArmFaultKind::kSensorStale, sensor_node_, stale_cycles_,
+  wrench_.update(feedback.wrench_fresh);
+  if (feedback.wrench_fresh) wrong_length_[joints_.size()] = 0;
+  counters_.wrenches_missing += wrench_.missing() ? 1 : 0;
+  if (wrench_.stale()) {
+    raise_missing(ArmFaultKind::kSensorStale, sensor_node_, wrench_.cycles(),
                   wrong_length_[joints_.size()]);
   }
 }

@@ -8,8 +8,9 @@
 //   any --raise()--> kFault, until reset(). The first fault stays.
 //
 // Supervised: bus, heartbeat of every node, boot-ups and other NMT states of running nodes, EMCY,
-// statuswords, feedback and wrench missing for more than kMissingCycles cycles in a row, everything
-// missing and our own frames refused for fewer.
+// statuswords, feedback missing for more than kMissingCycles cycles in a row, the wrench for as
+// many samples (hw/sensors/wrench_staleness.h), everything missing and our own frames refused for
+// fewer.
 //
 // Real-time but for the constructor, no clock; one thread. Joints and counters outlive it.
 
@@ -24,6 +25,7 @@
 #include "hw/canopen/emergency.h"
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/heartbeat_watch.h"
+#include "hw/sensors/wrench_staleness.h"
 #include "shared/canopen/drive_profile.h"
 #include "shared/cell/robot.h"
 #include "shared/ports/arm.h"
@@ -119,10 +121,10 @@ class ArmSupervision {
   canopen::HeartbeatWatch watch_;
   std::array<std::uint32_t, kMaxJoints> missing_cycles_{};  ///< in a row
   std::array<std::uint16_t, kMaxJoints> warned_{};          ///< last error code that only warned
-  std::uint32_t stale_cycles_ = 0;                          ///< in a row without a new wrench
-  std::uint32_t silent_cycles_ = 0;                         ///< in a row without any answer
-  std::uint32_t refused_cycles_ = 0;                        ///< in a row with a refused frame
-  bool refused_ = false;                                    ///< in this cycle
+  WrenchStaleness wrench_;
+  std::uint32_t silent_cycles_ = 0;   ///< in a row without any answer
+  std::uint32_t refused_cycles_ = 0;  ///< in a row with a refused frame
+  bool refused_ = false;              ///< in this cycle
   /// Per joint, and of the sensor behind them: 1 + the length of a frame that was dropped since the
   /// last good one.
   std::array<std::uint8_t, kMaxJoints + 1> wrong_length_{};

@@ -45,7 +45,9 @@ BringUp::BringUp(const Robot& robot)
     if (!takes_stop(canopen_drive(joint).profile))
       known_.push_back({SettingNote::Kind::kNoStop, joint.node});
   }
-  add_node(robot.sensor.node, boot_s(robot, robot.sensor.node), sensor_settings(robot));
+  if (robot.sensor.node != 0) {
+    add_node(robot.sensor.node, boot_s(robot, robot.sensor.node), sensor_settings(robot));
+  }
   runner_.reset(known_);
 }
 

@@ -1,8 +1,8 @@
 #include "hw/arm/canopen_arm.h"
 
+#include <optional>
 #include <span>
 
-#include "hw/arm/cob_ids.h"
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/node_settings.h"
 
@@ -27,9 +27,9 @@ CanopenArm::CanopenArm(const Robot& robot, CanBus& bus)
       robot_(checked(robot)),
       bring_up_(robot_),
       joints_(channels_of(robot)),
-      wrench_source_(robot.sensor, {kForceCobId, kTorqueCobId}),
+      sensor_(open_sensor(robot.sensor)),
       supervision_(robot, joints_, counters_),
-      intake_(robot, joints_, wrench_source_, supervision_, counters_),
+      intake_(robot, joints_, *sensor_.source, supervision_, counters_),
       output_(robot, bus, joints_, supervision_, counters_) {}
 
 std::vector<std::string> CanopenArm::notes() const {
@@ -41,6 +41,7 @@ std::vector<std::string> CanopenArm::notes() const {
 bool CanopenArm::prepare(std::int64_t now_ns) {
   if (state() == ArmState::kFault) {
     bring_up_.restart();
+    sensor_.restart();
     supervision_.reset();
   }
   if (state() != ArmState::kUnconfigured) {
@@ -48,7 +49,8 @@ bool CanopenArm::prepare(std::int64_t now_ns) {
   }
   supervision_.check_bus(bus_.status());
   run_bring_up(now_ns);
-  if (state() == ArmState::kFault || bring_up_.state() != BringUp::State::kDone) {
+  if (state() == ArmState::kFault || bring_up_.state() != BringUp::State::kDone ||
+      !sensor_.started()) {
     return false;
   }
   intake_.reset();
@@ -59,16 +61,23 @@ bool CanopenArm::prepare(std::int64_t now_ns) {
 
 void CanopenArm::run_bring_up(std::int64_t now_ns) {
   ReceivedFrame received;
-  for (int i = 0; bring_up_.state() != BringUp::State::kDone && i < ArmIntake::kMaxFramesPerCall &&
-                  bus_.receive(received);
-       ++i) {
+  const auto done = [this] {
+    return bring_up_.state() == BringUp::State::kDone && sensor_.started();
+  };
+  for (int i = 0; !done() && i < ArmIntake::kMaxFramesPerCall && bus_.receive(received); ++i) {
     bring_up_.process(received.frame, now_ns, bus_);
     bring_up_.update(now_ns, bus_);
+    if (sensor_.start != nullptr) sensor_.start->process(received.frame);
   }
   bring_up_.update(now_ns, bus_);
+  if (bring_up_.state() == BringUp::State::kDone && sensor_.start != nullptr) {
+    sensor_.start->update(now_ns, bus_);
+  }
   bus_.flush();
   if (bring_up_.state() == BringUp::State::kFailed) {
     supervision_.raise(bring_up_.fault());
+  } else if (sensor_.failed()) {
+    supervision_.raise(sensor_.start->fault());
   }
 }
 
@@ -76,10 +85,11 @@ void CanopenArm::start_cycle(std::int64_t now_ns) noexcept {
   if (state() == ArmState::kUnconfigured) {
     return;
   }
-  intake_.open_cycle(now_ns, bus_);
+  const std::optional<CanFrame> request = intake_.open_cycle(now_ns, bus_);
   stop_if_due(true);
   ++counters_.cycles;
   output_.send_sync();
+  if (request) output_.send_request(*request);
 }
 
 bool CanopenArm::receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept {

@@ -1,9 +1,11 @@
 #pragma once
-// An arm of CiA 402 drives and a force/torque node on one CAN bus, behind the arm port.
+// An arm of CiA 402 drives and a force/torque sensor on one CAN bus, behind the arm port.
 //
-// prepare() brings all nodes up (hw/arm/bring_up.h). After that a cycle is
+// prepare() brings all nodes up (hw/arm/bring_up.h), then a sensor that is none
+// (hw/sensors/sensor_start.h). After that a cycle is
 //
-//   start_cycle   takes in what came late, then SYNC: drives act on their targets and answer
+//   start_cycle   takes in what came late, then SYNC: drives act on their targets and answer; then
+//                 what the sensor is asked, where it is asked by more
 //   receive       TPDO1 of every joint, the two halves of the wrench
 //   command       supervision, state machine, RPDOs of every joint, the master's heartbeat
 //
@@ -32,7 +34,7 @@
 #include "hw/arm/bring_up.h"
 #include "hw/arm/device_arm.h"
 #include "hw/arm/joint_channel.h"
-#include "hw/sensors/canopen_wrench_source.h"
+#include "hw/arm/sensor_device.h"
 #include "shared/cell/robot.h"
 #include "shared/ports/arm.h"
 #include "shared/ports/can_bus.h"
@@ -73,7 +75,7 @@ class CanopenArm : public DeviceArm {
   BringUp bring_up_;
   Counters counters_;
   std::vector<JointChannel> joints_;  ///< of a fixed size: the parts below look into it
-  CanopenWrenchSource wrench_source_;
+  SensorDevice sensor_;
   ArmSupervision supervision_;
   ArmIntake intake_;
   ArmOutput output_;

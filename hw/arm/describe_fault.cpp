@@ -6,6 +6,7 @@
 
 #include "hw/arm/arm_supervision.h"
 #include "hw/arm/bring_up.h"
+#include "hw/arm/describe_sensor.h"
 #include "hw/arm/node_settings.h"
 #include "hw/arm/saturation_fault.h"
 #include "hw/canopen/emergency.h"
@@ -21,6 +22,7 @@ namespace {
 using canopen::ObjectSetting;
 
 std::string node_name(std::uint8_t node, const Robot& robot) {
+  if (node == 0 && robot.sensor.node == 0) return sensor_name(robot.sensor);
   std::string owner = "not of this robot";
   for (const Joint& joint : robot.joints) {
     if (joint.node == node) owner = joint.name;
@@ -209,10 +211,21 @@ std::string feedback_missing(const ArmFault& fault) {
       fault.code, ArmSupervision::kMissingCycles);
 }
 
+std::string sensor_stale(const ArmFault& fault, const Robot& robot) {
+  return format(
+             "no new wrench in %u cycles in a row, at most %u are allowed; check that the sensor "
+             "samples at least once ",
+             fault.code, WrenchStaleness::cycles_max(robot.sensor)) +
+         (robot.sensor.cycles_per_sample == 1
+              ? format("a cycle of %u us", robot.cycle_us)
+              : format("in %d cycles of %u us", robot.sensor.cycles_per_sample, robot.cycle_us));
+}
+
 /// Of a frame that betrays another master (hw/arm/other_master.h).
-const char* master_frame_name(std::uint32_t cob_id) {
+const char* master_frame_name(std::uint32_t cob_id, const Robot& robot) {
   if (cob_id == tenon::canopen::kNmt) return "NMT command";
   if (cob_id == tenon::canopen::kSync) return "SYNC";
+  if (cob_id == robot.sensor.request_id) return "what asks the force/torque sensor";
   if (cob_id >= tenon::canopen::kHeartbeat) return "heartbeat of the master's node";
   return cob_id >= tenon::canopen::kSdoRequest ? "SDO download" : "setpoint of a drive";
 }
@@ -220,6 +233,7 @@ const char* master_frame_name(std::uint32_t cob_id) {
 }  // namespace
 
 std::string describe(const ArmFault& fault, const Robot& robot) {
+  if (const auto line = describe_sensor(fault, robot.sensor)) return *line;
   switch (fault.kind) {
     case ArmFaultKind::kNone:
       return "no fault";
@@ -243,12 +257,7 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
              (fault.object != 0 ? wrong_length(fault) : feedback_missing(fault));
     case ArmFaultKind::kSensorStale:
       return node_name(fault, robot) +
-             (fault.object != 0
-                  ? wrong_length(fault)
-                  : format("no new wrench in %u cycles in a row, at most %u are allowed; check "
-                           "that the "
-                           "sensor samples at least once a cycle of %u us",
-                           fault.code, ArmSupervision::kMissingCycles, robot.cycle_us));
+             (fault.object != 0 ? wrong_length(fault) : sensor_stale(fault, robot));
     case ArmFaultKind::kSensorInvalid:
       return node_name(fault, robot) + sensor_invalid(fault, robot);
     case ArmFaultKind::kBusDown:
@@ -256,7 +265,7 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
              "that the other end still runs";
     case ArmFaultKind::kOtherMaster:
       return format("another master runs on this bus: 0x%03X (%s) came from it; stop it first",
-                    fault.code, master_frame_name(fault.code));
+                    fault.code, master_frame_name(fault.code, robot));
     case ArmFaultKind::kQueueFull:
       return format(
           "the transmit queue was full in %u cycles in a row, at most %u are allowed; check bus "

@@ -9,6 +9,7 @@ namespace tenon::hw {
 namespace {
 
 constexpr std::uint32_t kMicrosecondsPerMillisecond = 1000;
+constexpr std::uint32_t kMicrosecondsPerSecond = 1'000'000;
 constexpr std::uint32_t kEnablingSteps = 4;  // fault reset, shutdown, switch on, enable operation
 
 class Frames {
@@ -28,6 +29,7 @@ class Frames {
     frames_.push_back({"heartbeat of " + of, tenon::canopen::kHeartbeat + node, 1, node, part,
                        robot_.heartbeat_ms * kMicrosecondsPerMillisecond, false, 0});
   }
+  void add(const BusFrame& frame) { frames_.push_back(frame); }
   [[nodiscard]] std::vector<BusFrame> take() { return std::move(frames_); }
 
  private:
@@ -53,11 +55,33 @@ void add_packed_commands(const Robot& robot, Frames& frames) {
 
 }  // namespace
 
+std::vector<BusFrame> sensor_frames(const Robot& robot) {
+  constexpr std::uint32_t kFull = 8;
+  const ForceTorqueSensor& sensor = robot.sensor;
+  if (sensor.protocol == SensorProtocol::kNode) {
+    const auto feedback = CyclePart::kFeedback;
+    return {{"force", kForceCobId, kFull, sensor.node, feedback, robot.cycle_us},
+            {"torque", kTorqueCobId, kFull, sensor.node, feedback, robot.cycle_us}};
+  }
+  if (sensor.protocol == SensorProtocol::kAtiNetcanoem) {
+    constexpr std::uint32_t kSecondBytes = 6;
+    const auto feedback = CyclePart::kFeedback;
+    return {{"request of the sensor", sensor.request_id, 0, robot.master_node, feedback,
+             robot.cycle_us},
+            {"gauges 0 2 4", sensor.sample_ids[0], kFull, 0, feedback, robot.cycle_us},
+            {"gauges 1 3 5", sensor.sample_ids[1], kSecondBytes, 0, feedback, robot.cycle_us}};
+  }
+  // By its own clock, in any part of a cycle.
+  const auto period_us =
+      static_cast<std::uint32_t>(kMicrosecondsPerSecond / std::uint32_t(sensor.rate_hz));
+  return {{"force", sensor.sample_ids[0], kFull, 0, CyclePart::kAnytime, period_us},
+          {"torque", sensor.sample_ids[1], kFull, 0, CyclePart::kAnytime, period_us}};
+}
+
 std::vector<BusFrame> frame_set(const Robot& robot) {
   Frames frames(robot);
   frames.cyclic("SYNC", tenon::canopen::kSync, 0, robot.master_node, CyclePart::kSync);
-  frames.cyclic("force", kForceCobId, 8, robot.sensor.node, CyclePart::kFeedback);
-  frames.cyclic("torque", kTorqueCobId, 8, robot.sensor.node, CyclePart::kFeedback);
+  for (const BusFrame& frame : sensor_frames(robot)) frames.add(frame);
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const Joint& joint = robot.joints[i];
     frames.cyclic("feedback of " + joint.name, joint_feedback_cob_id(robot, i), 8, joint.node,
@@ -74,7 +98,9 @@ std::vector<BusFrame> frame_set(const Robot& robot) {
   for (const Joint& joint : robot.joints) {
     frames.heartbeat(joint.name, joint.node, CyclePart::kAnytime);
   }
-  frames.heartbeat("the sensor", robot.sensor.node, CyclePart::kAnytime);
+  if (robot.sensor.node != 0) {
+    frames.heartbeat("the sensor", robot.sensor.node, CyclePart::kAnytime);
+  }
   frames.heartbeat("the master", robot.master_node, CyclePart::kCommand);
   return frames.take();
 }

@@ -29,6 +29,9 @@ struct BusFrame {
   std::uint32_t in_a_row = 0;   ///< then comes a pause of many cycles; 0: it never does
 };
 
+/// Of the force/torque sensor, but for its heartbeat. What is no CANopen node is sender 0.
+[[nodiscard]] std::vector<BusFrame> sensor_frames(const Robot& robot);
+
 [[nodiscard]] std::vector<BusFrame> frame_set(const Robot& robot);
 
 }  // namespace tenon::hw

@@ -7,6 +7,7 @@
 
 #include "hw/arm/cob_ids.h"
 #include "hw/arm/drive_settings.h"
+#include "hw/arm/identifiers.h"
 #include "hw/canopen/pdo.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
@@ -117,7 +118,9 @@ void check_nodes(const Robot& robot) {
   for (const Joint& joint : robot.joints) {
     nodes.emplace_back(joint.node, "joint " + joint.name);
   }
-  nodes.emplace_back(robot.sensor.node, "the force/torque sensor");
+  if (robot.sensor.protocol == SensorProtocol::kNode) {
+    nodes.emplace_back(robot.sensor.node, "the force/torque sensor");
+  }
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto& [node, owner] = nodes[i];
     if (node < 1 || node > 127) {
@@ -222,7 +225,7 @@ Settings sensor_settings(const Robot& robot) {
     PdoConfiguration pdo{PdoConfiguration::Direction::kTransmit,
                          static_cast<std::uint8_t>(half + 1),
                          half == 0 ? kForceCobId : kTorqueCobId,
-                         canopen::kEverySync,
+                         static_cast<std::uint8_t>(robot.sensor.cycles_per_sample),
                          {}};
     for (unsigned axis = 1; axis <= 3; ++axis) {
       pdo.entries.push_back({kForceInputs, static_cast<std::uint8_t>(3 * half + axis), 16});
@@ -267,6 +270,7 @@ void check_robot(const Robot& robot) {
     refuse(robot, std::to_string(robot.targets_per_frame) + " targets a frame, must be 1 or 2");
   }
   check_fixed(robot);
+  check_sensor_identifiers(robot, canopen_identifiers(robot));
   if (robot.heartbeat_ms == 0 || robot.heartbeat_timeout_ms > 65535 ||
       robot.heartbeat_timeout_ms < 2 * robot.heartbeat_ms) {
     refuse(robot, "heartbeat of " + std::to_string(robot.heartbeat_ms) + " ms with a timeout of " +

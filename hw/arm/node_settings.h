@@ -37,7 +37,7 @@ struct InterpolationPeriod {
 /// Throws InputError with one line where the robot cannot be driven: no joint or too many, a node
 /// outside 1..127 or used twice, a period that 60C2h cannot hold, gears or times that are not
 /// positive, a master heartbeat slower than half its timeout, targets that no frame holds, drives
-/// whose fixed PDOs do not go with the others.
+/// whose fixed PDOs do not go with the others, an identifier of the sensor that is another's.
 void check_robot(const Robot& robot);
 
 }  // namespace tenon::hw

@@ -22,12 +22,20 @@ OtherMaster::OtherMaster(const Robot& robot) {
     masters_own_.set(joint_controlword_cob_id(joint.node));
     sdo_requests_.set(tenon::canopen::kSdoRequest + joint.node);
   }
-  sdo_requests_.set(tenon::canopen::kSdoRequest + robot.sensor.node);
+  if (robot.sensor.node != 0) {
+    sdo_requests_.set(tenon::canopen::kSdoRequest + robot.sensor.node);
+  } else if (robot.sensor.protocol == SensorProtocol::kRobotousRft) {
+    masters_own_.set(robot.sensor.request_id);
+  } else {
+    polled_id_ = robot.sensor.request_id;
+  }
 }
 
 bool OtherMaster::sent(const CanFrame& frame) const noexcept {
   if (frame.extended || frame.remote || frame.id >= kIdentifiers) return false;
   if (masters_own_[frame.id]) return true;
+  // Its answers have the same identifier, and data.
+  if (frame.id == polled_id_ && frame.length == 0) return true;
   if (!sdo_requests_[frame.id] || frame.length == 0) return false;
   const unsigned command = frame.data[0] >> 5U;
   return command == kInitiateDownload || command == kBlockDownload;

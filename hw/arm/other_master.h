@@ -22,6 +22,7 @@ class OtherMaster {
   static constexpr std::size_t kIdentifiers = 2048;
   std::bitset<kIdentifiers> masters_own_;
   std::bitset<kIdentifiers> sdo_requests_;
+  std::uint32_t polled_id_ = kIdentifiers;  ///< an empty frame asks the sensor for a sample
 };
 
 }  // namespace tenon::hw

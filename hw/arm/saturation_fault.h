@@ -30,6 +30,12 @@ inline constexpr std::uint16_t kNoObject = 0;
           std::bit_cast<std::uint32_t>(static_cast<float>(*saturated.reading))};
 }
 
+/// The sensor says itself that it is not well.
+[[nodiscard]] inline ArmFault unwell_fault(std::uint8_t node, std::uint16_t status) {
+  return {ArmFaultKind::kSensorInvalid, node, canopen::object_of(tenon::canopen::kSensorStatus),
+          status};
+}
+
 /// The reading that such a fault tells; unset: it tells of something else.
 [[nodiscard]] inline std::optional<double> saturated_reading(const ArmFault& fault) {
   if (fault.object >> 8 != kNoObject || fault.object == 0) return std::nullopt;

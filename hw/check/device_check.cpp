@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hw/arm/describe_fault.h"
+#include "hw/arm/describe_sensor.h"
 #include "hw/arm/drive_settings.h"
 #include "hw/arm/node_settings.h"
 #include "hw/arm/setting_runner.h"
@@ -337,6 +338,7 @@ CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, Device
     const SettingNote no_stop{SettingNote::Kind::kNoStop, robot.joints[i].node};
     if (!joint.stops_at_once) remarks += describe(no_stop, robot) + "\n";
   }
+  report.text += describe_start(robot.sensor);
   const BusLoad load = bus_load(robot);
   report.text += format("bus: %u frames every %u us, %.1f %% of %u bit/s (%.1f %% at worst)\n",
                         load.frames_per_cycle, robot.cycle_us, 100.0 * load.nominal,

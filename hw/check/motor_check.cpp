@@ -1,5 +1,6 @@
 #include "hw/check/motor_check.h"
 
+#include "hw/arm/describe_sensor.h"
 #include "hw/bus_load/bus_load.h"
 #include "hw/bus_load/response_times.h"
 #include "hw/mit/describe_motor.h"
@@ -12,7 +13,7 @@ namespace tenon::hw {
 CheckReport motor_report(const Robot& robot) {
   mit::check_robot(robot);
   CheckReport report;
-  report.text = mit::describe_settings(robot);
+  report.text = mit::describe_settings(robot) + describe_start(robot.sensor);
   const BusLoad load = bus_load(robot);
   report.text += format("bus: %u frames a cycle, %.1f %% nominal, %.1f %% in the worst case\n",
                         load.frames_per_cycle, 100.0 * load.nominal, 100.0 * load.worst);

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "hw/arm/cob_ids.h"
+#include "hw/arm/identifiers.h"
 #include "hw/mit/mit_arm.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
@@ -24,17 +26,28 @@ constexpr std::uint32_t kWatchdogCycles = 3;
 std::set<std::uint32_t> sensors_own(const Robot& robot) {
   namespace canopen = tenon::canopen;
   const std::uint32_t node = robot.sensor.node;
-  return {canopen::kNmt,
-          canopen::kSync,
-          canopen::kEmergency + node,
-          kForceCobId,
-          kTorqueCobId,
-          kStopCobId,
-          canopen::kSdoResponse + node,
-          canopen::kSdoRequest + node,
-          canopen::kHeartbeat + node,
-          canopen::kHeartbeat + robot.master_node,
-          tenon::mit::kRegisterId};
+  std::set<std::uint32_t> own = {canopen::kNmt, canopen::kSync, kStopCobId,
+                                 canopen::kHeartbeat + robot.master_node, tenon::mit::kRegisterId};
+  if (robot.sensor.protocol == SensorProtocol::kNode) {
+    own.insert({canopen::kEmergency + node, kForceCobId, kTorqueCobId, canopen::kSdoResponse + node,
+                canopen::kSdoRequest + node, canopen::kHeartbeat + node});
+  }
+  return own;
+}
+
+/// Who else is on the bus, for a sensor that is no CANopen node.
+std::vector<IdentifierOwner> motors_own(const Robot& robot) {
+  namespace canopen = tenon::canopen;
+  std::vector<IdentifierOwner> owners = {
+      {canopen::kNmt, "NMT"},
+      {canopen::kSync, "SYNC"},
+      {canopen::kHeartbeat + robot.master_node, "the master's heartbeat"},
+      {tenon::mit::kRegisterId, "the registers of all motors"}};
+  for (const Joint& joint : robot.joints) {
+    owners.push_back({joint.node, "the motor of " + joint.name + " (ESC_ID)"});
+    owners.push_back({mit_motor(joint).feedback_id, "the motor of " + joint.name + " (MST_ID)"});
+  }
+  return owners;
 }
 
 }  // namespace
@@ -43,6 +56,7 @@ void check_robot(const Robot& robot) {
   if (robot.joints.empty() || robot.joints.size() > kMaxJoints) {
     refuse(robot, format("%zu joints, must be 1..%zu", robot.joints.size(), kMaxJoints));
   }
+  check_sensor_identifiers(robot, motors_own(robot));
   std::set<std::uint32_t> taken = sensors_own(robot);
   for (const Joint& joint : robot.joints) {
     const MitMotor& motor = mit_motor(joint);

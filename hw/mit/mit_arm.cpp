@@ -1,8 +1,8 @@
 #include "hw/mit/mit_arm.h"
 
 #include <algorithm>
+#include <optional>
 
-#include "hw/arm/cob_ids.h"
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/saturation_fault.h"
 #include "hw/canopen/emergency.h"
@@ -43,8 +43,8 @@ MitArm::MitArm(const Cell& cell, CanBus& bus)
       motor_bring_up_(robot_),
       other_master_(sensor_alone(robot_)),
       motors_(motors_of(robot_)),
-      wrench_source_(robot_.sensor, {kForceCobId, kTorqueCobId}),
-      wrench_intake_(wrench_source_, robot_.sensor),
+      sensor_(open_sensor(robot_.sensor)),
+      wrench_intake_(*sensor_.source, robot_.sensor),
       supervision_(robot_, motors_, counters_) {}
 
 std::vector<std::string> MitArm::notes() const {
@@ -58,6 +58,7 @@ std::vector<std::string> MitArm::notes() const {
 bool MitArm::prepare(std::int64_t now_ns) {
   if (state() == ArmState::kFault) {
     sensor_bring_up_.restart();
+    sensor_.restart();
     motor_bring_up_.restart();
     supervision_.reset();
   }
@@ -74,7 +75,8 @@ bool MitArm::prepare(std::int64_t now_ns) {
 void MitArm::bring_up(std::int64_t now_ns) {
   ReceivedFrame received;
   for (int i = 0; i < kMostFrames && bus_.receive(received); ++i) {
-    if (sensor_bring_up_.state() == BringUp::State::kDone) {
+    if (sensor_.start != nullptr) sensor_.start->process(received.frame);
+    if (sensor_bring_up_.state() == BringUp::State::kDone && sensor_.started()) {
       motor_bring_up_.process(received.frame, now_ns, bus_);
     } else {
       sensor_bring_up_.process(received.frame, now_ns, bus_);
@@ -86,6 +88,9 @@ void MitArm::bring_up(std::int64_t now_ns) {
     supervision_.raise(sensor_bring_up_.fault());
   }
   if (sensor_bring_up_.state() != BringUp::State::kDone) return;
+  if (sensor_.start != nullptr) sensor_.start->update(now_ns, bus_);
+  if (sensor_.failed()) supervision_.raise(sensor_.start->fault());
+  if (!sensor_.started()) return;
   motor_bring_up_.update(now_ns, bus_);
   if (motor_bring_up_.state() == MotorBringUp::State::kFailed) {
     supervision_.raise(motor_bring_up_.fault());
@@ -111,19 +116,16 @@ void MitArm::start_cycle(std::int64_t now_ns) noexcept {
   const bool wrench_was_late = wrench_late_;
   cycle_open_ = false;
   (void)drain(now_ns);
-  forget_freshness();
+  feedback_.joints_fresh = feedback_.joints_off = 0;
+  const std::optional<CanFrame> request = wrench_intake_.begin_cycle();
   feedback_.wrench_fresh = wrench_was_late || wrench_late_;
   wrench_late_ = false;
   cycle_open_ = true;
   feedback_.sync_ns = now_ns;
   ++counters_.cycles;
   send(canopen::sync_frame());
+  if (request) send(*request);
   send_to_motors();
-}
-
-void MitArm::forget_freshness() noexcept {
-  feedback_.joints_fresh = feedback_.joints_off = 0;
-  wrench_intake_.forget_freshness();
 }
 
 bool MitArm::receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept {
@@ -138,7 +140,7 @@ bool MitArm::receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept {
   feedback.state = state();
   feedback.fault = fault();
   const bool all = feedback_.joints_fresh == (1U << motors_.size()) - 1U;
-  return cycle_open_ && all && wrench_intake_.both_halves_seen();
+  return cycle_open_ && all && wrench_intake_.answered();
 }
 
 bool MitArm::attend(std::int64_t now_ns) noexcept {
@@ -178,14 +180,15 @@ int MitArm::drain(std::int64_t now_ns) noexcept {
   ReceivedFrame received;
   int taken = 0;
   while (taken < kMostFrames && bus_.receive(received)) {
-    take(received.frame, now_ns);
+    take(received, now_ns);
     ++taken;
   }
   return taken;
 }
 
-void MitArm::take(const CanFrame& frame, std::int64_t now_ns) noexcept {
-  if (take_motor(frame) || take_wrench(frame)) return;
+void MitArm::take(const ReceivedFrame& received, std::int64_t now_ns) noexcept {
+  const CanFrame& frame = received.frame;
+  if (take_motor(frame) || take_wrench(received)) return;
   if (others_own(frame)) {
     ++counters_.unexpected_frames;
     supervision_.raise({ArmFaultKind::kOtherMaster, 0, 0, frame.id});
@@ -221,15 +224,15 @@ bool MitArm::take_motor(const CanFrame& frame) noexcept {
   return true;
 }
 
-bool MitArm::take_wrench(const CanFrame& frame) noexcept {
+bool MitArm::take_wrench(const ReceivedFrame& received) noexcept {
   const std::uint64_t torn_before = wrench_intake_.torn();
-  const WrenchSource::Taken taken = wrench_intake_.take(frame);
+  const WrenchSource::Taken taken = wrench_intake_.take(received.frame, received.time_ns);
   if (taken == WrenchSource::Taken::kForeign) return false;
   if (taken == WrenchSource::Taken::kMalformed) {
     ++counters_.malformed_frames;
     return true;
   }
-  if (!cycle_open_) ++counters_.late_frames;
+  if (!cycle_open_ && wrench_intake_.can_be_late()) ++counters_.late_frames;
   counters_.wrench_halves_torn += wrench_intake_.torn() - torn_before;
   if (const auto& force_N = wrench_intake_.force_N()) {
     const double external_N = (*force_N - limit_.unloaded_N).norm();
@@ -240,6 +243,9 @@ bool MitArm::take_wrench(const CanFrame& frame) noexcept {
   }
   if (const auto& end = wrench_intake_.saturated()) {
     supervision_.raise(saturation_fault(robot_.sensor.node, *end));
+  }
+  if (const auto& status = wrench_intake_.unwell()) {
+    supervision_.raise(unwell_fault(robot_.sensor.node, *status));
   }
   if (const auto& sample = wrench_intake_.sample()) {
     feedback_.wrench = sample->wrench;

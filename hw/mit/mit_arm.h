@@ -1,11 +1,11 @@
 #pragma once
-// An arm of motors in MIT mode and a CANopen force/torque node on one CAN bus, behind the arm port.
+// An arm of motors in MIT mode and a force/torque sensor on one CAN bus, behind the arm port.
 //
-// prepare() brings up the sensor (hw/arm/bring_up.h), then the motors (motor_bring_up.h). After
-// that a cycle is
+// prepare() brings up the sensor (hw/arm/bring_up.h, hw/sensors/sensor_start.h), then the motors
+// (motor_bring_up.h). After that a cycle is
 //
-//   start_cycle   SYNC, which the sensor answers, and to each motor what command() decided last,
-//                 which it answers with its feedback
+//   start_cycle   SYNC, and what the sensor is asked by more; to each motor what command() decided
+//                 last, which it answers with its feedback
 //   receive       the feedback of every motor, the two halves of the wrench
 //   command       supervision, state machine, what the motors are sent as the next cycle begins,
 //                 the master's heartbeat
@@ -26,11 +26,11 @@
 #include "hw/arm/arm_counters.h"
 #include "hw/arm/bring_up.h"
 #include "hw/arm/device_arm.h"
+#include "hw/arm/sensor_device.h"
 #include "hw/mit/gravity.h"
 #include "hw/mit/mit_supervision.h"
 #include "hw/mit/motor_bring_up.h"
 #include "hw/mit/motor_channel.h"
-#include "hw/sensors/canopen_wrench_source.h"
 #include "hw/sensors/wrench_intake.h"
 #include "shared/cell/cell.h"
 #include "shared/ports/arm.h"
@@ -70,11 +70,10 @@ class MitArm : public DeviceArm {
   void bring_up(std::int64_t now_ns);
   void begin(std::int64_t now_ns);
   int drain(std::int64_t now_ns) noexcept;
-  void take(const CanFrame& frame, std::int64_t now_ns) noexcept;
+  void take(const ReceivedFrame& received, std::int64_t now_ns) noexcept;
   [[nodiscard]] bool take_motor(const CanFrame& frame) noexcept;
-  [[nodiscard]] bool take_wrench(const CanFrame& frame) noexcept;
+  [[nodiscard]] bool take_wrench(const ReceivedFrame& received) noexcept;
   [[nodiscard]] bool others_own(const CanFrame& frame) const noexcept;
-  void forget_freshness() noexcept;
   void decide(ArmRequest request, bool follow, const JointVector& position) noexcept;
   void send(const CanFrame& frame) noexcept;
   void send_to_motors() noexcept;
@@ -88,7 +87,7 @@ class MitArm : public DeviceArm {
   OtherMaster other_master_;
   ArmCounters counters_;
   std::vector<MotorChannel> motors_;  ///< of a fixed size: the supervision looks into it
-  CanopenWrenchSource wrench_source_;
+  SensorDevice sensor_;
   WrenchIntake wrench_intake_;
   MitSupervision supervision_;
 

@@ -13,8 +13,9 @@ MitSupervision::MitSupervision(const Robot& robot, std::span<const MotorChannel>
     : motors_(motors),
       counters_(counters),
       sensor_node_(robot.sensor.node),
-      heartbeat_timeout_ns_(robot.heartbeat_timeout_ms * kNanosecondsPerMillisecond) {
-  sensor_watch_.add(sensor_node_);
+      heartbeat_timeout_ns_(robot.heartbeat_timeout_ms * kNanosecondsPerMillisecond),
+      wrench_(robot.sensor) {
+  if (sensor_node_ != 0) sensor_watch_.add(sensor_node_);
 }
 
 void MitSupervision::reset() noexcept {
@@ -26,6 +27,7 @@ void MitSupervision::reset() noexcept {
 void MitSupervision::begin(std::int64_t now_ns) noexcept {
   sensor_watch_.restart(now_ns);
   missing_.fill(0);
+  wrench_.reset();
   silent_cycles_ = refused_cycles_ = 0;
   send_failures_.reset();
   refused_ = false;
@@ -83,16 +85,16 @@ void MitSupervision::look_at_answers(const ArmFeedback& feedback, std::int64_t n
   const bool heard = feedback.joints_fresh != 0 || feedback.wrench_fresh || refused_;
   silent_cycles_ = heard ? 0 : silent_cycles_ + 1;
   if (silent_cycles_ > kSilentCycles) raise({ArmFaultKind::kBusSilent, 0, 0, silent_cycles_});
-  for (std::size_t i = 0; i <= motors_.size(); ++i) {
-    const bool sensor = i == motors_.size();
-    const bool fresh = sensor ? feedback.wrench_fresh : (feedback.joints_fresh >> i & 1U) != 0;
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const bool fresh = (feedback.joints_fresh >> i & 1U) != 0;
     missing_[i] = fresh ? 0 : missing_[i] + 1;
-    if (fresh) continue;
-    ++(sensor ? counters_.wrenches_missing : counters_.joint_frames_missing);
+    counters_.joint_frames_missing += fresh ? 0 : 1;
     if (missing_[i] <= kMissingCycles) continue;
-    raise({sensor ? ArmFaultKind::kSensorStale : ArmFaultKind::kFeedbackMissing,
-           sensor ? sensor_node_ : motors_[i].node(), 0, missing_[i]});
+    raise({ArmFaultKind::kFeedbackMissing, motors_[i].node(), 0, missing_[i]});
   }
+  wrench_.update(feedback.wrench_fresh);
+  counters_.wrenches_missing += wrench_.missing() ? 1 : 0;
+  if (wrench_.stale()) raise({ArmFaultKind::kSensorStale, sensor_node_, 0, wrench_.cycles()});
 }
 
 void MitSupervision::look_at_setpoints(const JointVector& position) noexcept {

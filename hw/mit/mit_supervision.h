@@ -23,6 +23,7 @@
 #include "hw/canopen/heartbeat.h"
 #include "hw/canopen/heartbeat_watch.h"
 #include "hw/mit/motor_channel.h"
+#include "hw/sensors/wrench_staleness.h"
 #include "shared/cell/robot.h"
 #include "shared/ports/arm.h"
 #include "shared/ports/can_bus.h"
@@ -81,8 +82,8 @@ class MitSupervision {
   std::int64_t entered_ns_ = 0;
   double force_stopped_N_ = 0.0;
   canopen::HeartbeatWatch sensor_watch_;
-  // In a row: the motors, and the sensor behind them.
-  std::array<std::uint32_t, kMaxJoints + 1> missing_{};
+  std::array<std::uint32_t, kMaxJoints> missing_{};  ///< in a row
+  WrenchStaleness wrench_;
   std::uint32_t silent_cycles_ = 0;
   std::uint32_t refused_cycles_ = 0;
   bool refused_ = false;

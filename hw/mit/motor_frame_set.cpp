@@ -2,7 +2,6 @@
 
 #include <cstdint>
 
-#include "hw/arm/cob_ids.h"
 #include "shared/canopen/constants.h"
 #include "shared/mit/robot_motors.h"
 
@@ -13,9 +12,8 @@ std::vector<BusFrame> motor_frame_set(const Robot& robot) {
   const std::uint8_t sensor = robot.sensor.node;
   const std::uint32_t cycle_us = robot.cycle_us;
   std::vector<BusFrame> frames = {
-      {"SYNC", tenon::canopen::kSync, 0, robot.master_node, CyclePart::kSync, cycle_us},
-      {"force", kForceCobId, kFull, sensor, CyclePart::kFeedback, cycle_us},
-      {"torque", kTorqueCobId, kFull, sensor, CyclePart::kFeedback, cycle_us}};
+      {"SYNC", tenon::canopen::kSync, 0, robot.master_node, CyclePart::kSync, cycle_us}};
+  for (const BusFrame& frame : sensor_frames(robot)) frames.push_back(frame);
   for (const Joint& joint : robot.joints) {
     frames.push_back({"command of " + joint.name, joint.node, kFull, robot.master_node,
                       CyclePart::kFeedback, cycle_us});
@@ -28,8 +26,10 @@ std::vector<BusFrame> motor_frame_set(const Robot& robot) {
                       joint.node, CyclePart::kCommand, cycle_us, false, 1});
   }
   const std::uint32_t heartbeat_us = 1000 * robot.heartbeat_ms;
-  frames.push_back({"heartbeat of the sensor", tenon::canopen::kHeartbeat + sensor, 1, sensor,
-                    CyclePart::kAnytime, heartbeat_us, false});
+  if (sensor != 0) {
+    frames.push_back({"heartbeat of the sensor", tenon::canopen::kHeartbeat + sensor, 1, sensor,
+                      CyclePart::kAnytime, heartbeat_us, false});
+  }
   frames.push_back({"heartbeat of the master", tenon::canopen::kHeartbeat + robot.master_node, 1,
                     robot.master_node, CyclePart::kCommand, heartbeat_us, false});
   return frames;

@@ -20,8 +20,8 @@ namespace tenon::hw {
 /// The line for people that belongs to a fault of such an arm.
 [[nodiscard]] std::string fault_text(const ArmFault& fault, const Robot& robot);
 
-/// What matters of this robot's drives before it is started, and what the cell must provide; one
-/// line each.
+/// What matters of this robot's drives and sensor before it is started, and what the cell must
+/// provide; one line each.
 [[nodiscard]] std::vector<std::string> start_remarks(const Robot& robot);
 
 }  // namespace tenon::hw

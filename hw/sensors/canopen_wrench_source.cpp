@@ -7,7 +7,8 @@
 
 namespace tenon::hw {
 
-WrenchSource::Taken CanopenWrenchSource::take(const CanFrame& frame, WrenchHalf& half) noexcept {
+WrenchSource::Taken CanopenWrenchSource::take(const CanFrame& frame, std::int64_t /*time_ns*/,
+                                              WrenchHalf& half) noexcept {
   const bool force = frame.id == ids_.force;
   if (frame.extended || frame.remote || (!force && frame.id != ids_.torque)) {
     return Taken::kForeign;
@@ -21,6 +22,7 @@ WrenchSource::Taken CanopenWrenchSource::take(const CanFrame& frame, WrenchHalf&
     half.raw[i] = load_le<std::int16_t>(bytes.subspan(2 * i));
   }
   half.counter = load_le<std::uint16_t>(bytes.subspan(6));
+  half.status = 0;  // told by EMCY
   return Taken::kHalf;
 }
 

@@ -26,7 +26,8 @@ class CanopenWrenchSource final : public WrenchSource {
         force_per_count_N_(sensor.force_per_count_N),
         torque_per_count_Nm_(sensor.torque_per_count_Nm) {}
 
-  [[nodiscard]] Taken take(const CanFrame& frame, WrenchHalf& half) noexcept override;
+  [[nodiscard]] Taken take(const CanFrame& frame, std::int64_t time_ns,
+                           WrenchHalf& half) noexcept override;
   [[nodiscard]] std::optional<Vector3> force_N(const WrenchHalf& half) const noexcept override;
   [[nodiscard]] Vector6 wrench(const std::array<std::int16_t, 6>& raw) const noexcept override;
 

@@ -13,20 +13,25 @@ constexpr int kRawEnd = 32767;
 }  // namespace
 
 void WrenchIntake::reset() noexcept {
+  source_.reset();
   pairing_.reset();
+  unwell_.reset();
   force_N_.reset();
   sample_.reset();
   saturated_.reset();
   halves_seen_ = 0;
+  cycles_since_sample_ = 0;
 }
 
-WrenchSource::Taken WrenchIntake::take(const CanFrame& frame) noexcept {
+WrenchSource::Taken WrenchIntake::take(const CanFrame& frame, std::int64_t time_ns) noexcept {
   force_N_.reset();
   sample_.reset();
   saturated_.reset();
+  unwell_.reset();
   WrenchHalf half;
-  const WrenchSource::Taken taken = source_.take(frame, half);
+  const WrenchSource::Taken taken = source_.take(frame, time_ns, half);
   if (taken != WrenchSource::Taken::kHalf) return taken;
+  if (half.status != 0) unwell_ = half.status;
   force_N_ = source_.force_N(half);
   // Whatever the other half says: what is at its end is no force.
   if (force_N_) look_for_ends({force_N_->data(), 3}, half.raw);
@@ -38,6 +43,7 @@ WrenchSource::Taken WrenchIntake::take(const CanFrame& frame) noexcept {
 
 void WrenchIntake::take_sample(const WrenchPairing::Sample& paired) noexcept {
   sample_ = Sample{source_.wrench(paired.counts), paired.counter};
+  cycles_since_sample_ = 0;
   look_for_ends({sample_->wrench.data(), 6}, paired.counts);
 }
 

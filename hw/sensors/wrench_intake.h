@@ -32,10 +32,18 @@ class WrenchIntake {
 
   /// Forgets all that was heard.
   void reset() noexcept;
-  /// From now on halves are of another cycle.
-  void forget_freshness() noexcept { halves_seen_ = 0; }
+  /// From now on halves are of another cycle. @return what the sensor is to be sent right after
+  /// SYNC
+  [[nodiscard]] std::optional<CanFrame> begin_cycle() noexcept {
+    halves_seen_ = 0;
+    ++cycles_since_sample_;
+    const std::optional<CanFrame> request = source_.begin_cycle();
+    asked_ = request.has_value();
+    return request;
+  }
   /// Reads a frame of the bus. What it brought stands in the calls below until the next one.
-  [[nodiscard]] WrenchSource::Taken take(const CanFrame& frame) noexcept;
+  /// @param time_ns when it came
+  [[nodiscard]] WrenchSource::Taken take(const CanFrame& frame, std::int64_t time_ns) noexcept;
 
   /// The force of the last frame, sensor axes, N, where it tells one by itself.
   [[nodiscard]] const std::optional<Vector3>& force_N() const noexcept { return force_N_; }
@@ -43,8 +51,16 @@ class WrenchIntake {
   [[nodiscard]] const std::optional<Sample>& sample() const noexcept { return sample_; }
   /// The first axis of that force or sample beyond its range, else the first raw value at its end.
   [[nodiscard]] const std::optional<Saturated>& saturated() const noexcept { return saturated_; }
-  /// Both halves came since forget_freshness(), of one sample or not.
-  [[nodiscard]] bool both_halves_seen() const noexcept { return halves_seen_ == 3; }
+  /// What the sensor says of its health, if it says that it is not well.
+  [[nodiscard]] const std::optional<std::uint16_t>& unwell() const noexcept { return unwell_; }
+  /// Nothing more is to be waited for in this cycle: both halves came, of one sample or not, none
+  /// is due yet, or none is ever due in a cycle.
+  [[nodiscard]] bool answered() const noexcept {
+    return halves_seen_ == 3 || sensor_.streams() ||
+           (!asked_ && cycles_since_sample_ < sensor_.cycles_per_sample);
+  }
+  /// What comes outside a cycle has missed one.
+  [[nodiscard]] bool can_be_late() const noexcept { return !sensor_.streams(); }
   /// Halves that were dropped since reset().
   [[nodiscard]] std::uint64_t torn() const noexcept { return pairing_.torn(); }
 
@@ -59,7 +75,10 @@ class WrenchIntake {
   std::optional<Vector3> force_N_;
   std::optional<Sample> sample_;
   std::optional<Saturated> saturated_;
+  std::optional<std::uint16_t> unwell_;
   std::uint8_t halves_seen_ = 0;  ///< bit 0: the first, bit 1: the second
+  bool asked_ = false;            ///< in this cycle, by a request
+  int cycles_since_sample_ = 0;   ///< begun since the last new one, or reset()
 };
 
 }  // namespace tenon::hw

@@ -33,6 +33,15 @@ template <WireNumber T>
   return std::bit_cast<T>(static_cast<wire::Bits<T>>(bits));
 }
 
+/// The same, its highest byte first.
+template <WireNumber T>
+[[nodiscard]] constexpr T load_be(std::span<const std::uint8_t> bytes) {
+  assert(bytes.size() >= sizeof(T));
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i) bits = bits << 8 | bytes[i];
+  return std::bit_cast<T>(static_cast<wire::Bits<T>>(bits));
+}
+
 /// A T into the first sizeof(T) bytes. A shorter span is a bug.
 template <WireNumber T>
 constexpr void store_le(std::span<std::uint8_t> bytes, T value) {

@@ -2,6 +2,7 @@
 // A robot as hw/robots/NAME gives it: its URDF the mechanics, robot.yaml the drives and the bus.
 
 #include <any>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -44,15 +45,38 @@ struct Joint {
   return joint.kind == Joint::Kind::kPrismatic ? "m" : "rad";
 }
 
-/// A force/torque node: two frames of four little-endian i16 (three values and a sample counter).
+/// What a force/torque sensor speaks, and with it what makes it take a sample.
+enum class SensorProtocol : std::uint8_t {
+  kNode = 0,          ///< a node as the drives are: the beginning of a cycle
+  kRobotousRft = 1,   ///< its own clock
+  kAtiNetcanoem = 2,  ///< a request
+};
+
+/// A force/torque sensor whose sample comes in two frames.
 struct ForceTorqueSensor {
-  std::uint8_t node = 0;
+  SensorProtocol protocol = SensorProtocol::kNode;
+  std::string profile{};                  ///< its name
+  std::vector<std::string> unverified{};  ///< of the profile: what nobody has seen, for people
+  std::uint8_t node = 0;                  ///< 0: it is no node
+  /// Of what is no node, 11 bits: where it is asked, and its two frames.
+  std::uint32_t request_id = 0;
+  std::array<std::uint32_t, 2> sample_ids{};
+  int rate_hz = 0;  ///< of one with its own clock
+  /// What rounding leaves of a reading; of one that tells no wrench but gauges, about that.
   double force_per_count_N = 0.0;
   double torque_per_count_Nm = 0.0;
   double force_range_N = 0.0;  ///< saturation
   double torque_range_Nm = 0.0;
   double force_noise_N = 0.0;  ///< standard deviation of a sample, by data sheet
   double torque_noise_Nm = 0.0;
+  /// m: a new sample every so many cycles, 1 to kMostCyclesPerSample.
+  int cycles_per_sample = 1;
+
+  static constexpr int kMostCyclesPerSample = 20;
+  static constexpr std::uint32_t kIdentifierMax = 0x7FF;
+
+  /// It has a clock of its own: a sample may fall into any cycle, and none is waited for.
+  [[nodiscard]] bool streams() const { return protocol == SensorProtocol::kRobotousRft; }
 };
 
 struct Robot {
@@ -77,9 +101,15 @@ struct Robot {
 /// cycle begins and reached as the one after does.
 [[nodiscard]] inline double protocol_lag_s(double cycle_s) { return 2.0 * cycle_s; }
 
-/// tau = (n + 1/2) T + tau_arm: from a force to the motion that answers it.
+/// T, and with it m T, in which a sensor has a new sample.
+[[nodiscard]] inline double sample_period_s(const Robot& robot) {
+  return 1e-6 * robot.cycle_us * robot.sensor.cycles_per_sample;
+}
+
+/// tau = (n + m/2) T + tau_arm: from a force to the motion that answers it.
 [[nodiscard]] inline double latency_s(const Robot& robot) {
-  return (robot.measurement_delay_cycles + 0.5) * 1e-6 * robot.cycle_us + robot.response_lag_s;
+  const double cycles = robot.measurement_delay_cycles + 0.5 * robot.sensor.cycles_per_sample;
+  return cycles * 1e-6 * robot.cycle_us + robot.response_lag_s;
 }
 
 }  // namespace tenon

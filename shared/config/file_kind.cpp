@@ -18,8 +18,8 @@ struct Kind {
   std::vector<std::string_view> telling;  ///< keys that no other kind has
 };
 
-const std::array<Kind, 5>& kinds() {
-  static const std::array<Kind, 5> kKinds = {{
+const std::array<Kind, 6>& kinds() {
+  static const std::array<Kind, 6> kKinds = {{
       {FileKind::kTask,
        "a task file",
        "goes first with tenon-plan, elsewhere with --task",
@@ -27,6 +27,10 @@ const std::array<Kind, 5>& kinds() {
       {FileKind::kCell, "a cell file", "goes with --cell", {"task_in_base", "tool_in_flange"}},
       {FileKind::kRobot, "a robot file", "is named by a cell file", {"urdf", "joints"}},
       {FileKind::kDrive, "a drive profile", "is named by a robot's joint", {"objects", "modes"}},
+      {FileKind::kSensor,
+       "a sensor profile",
+       "is named by a robot's sensor",
+       {"identifiers", "unverified", "force_per_count_N"}},
       {FileKind::kExperiment,
        "an experiment",
        "goes with tenon-evaluate --experiment",

@@ -22,14 +22,15 @@ namespace tenon {
 /// The names of a task file's variants, in its order.
 [[nodiscard]] std::vector<std::string> task_variants(const std::filesystem::path& file);
 
-/// hw/robots/NAME/robot.yaml, the URDF that it names, and the profiles of the drives that it names.
+/// hw/robots/NAME/robot.yaml, the URDF that it names, and the profiles of drives and sensor that it
+/// names.
 [[nodiscard]] Robot load_robot(const std::filesystem::path& file);
 
 /// hw/cells/NAME.yaml. The robot is named relative to the cell's file.
 [[nodiscard]] Cell load_cell(const std::filesystem::path& file);
 
 /// The files that a cell is made of, in a fixed order: its own, all in its robot's folder, and the
-/// profiles of its drives.
+/// profiles of its drives and sensor.
 [[nodiscard]] std::vector<std::filesystem::path> cell_files(const std::filesystem::path& file);
 
 /// sim/experiments/*.yaml.

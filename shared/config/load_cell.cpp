@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "shared/config/file_kind.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
+#include "shared/config/sensor_file.h"
 #include "shared/config/yaml_value.h"
 #include "shared/ports/arm.h"
 
@@ -41,11 +43,14 @@ void check_fall(const Map& map, const Robot& robot) {
 }
 
 /// Of a robot that cannot be read there are none; load_cell() says why.
-void append_drive_files(const std::filesystem::path& robot_file,
-                        std::vector<std::filesystem::path>& files) {
+void append_profiles(const std::filesystem::path& robot_file,
+                     std::vector<std::filesystem::path>& files) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(robot_file, error)) return;
   const auto robot = Value::parse(robot_file, config::read_file(robot_file));
+  const auto sensor = robot.peek("sensor");
+  const auto profile = sensor ? sensor->peek("profile") : std::nullopt;
+  if (profile) files.push_back(config::sensor_file(robot_file, profile->text()));
   const auto joints = robot.peek("joints");
   if (!joints) return;
   for (const Value& joint : joints->list(1, kMaxJoints)) {
@@ -117,7 +122,7 @@ std::vector<std::filesystem::path> cell_files(const std::filesystem::path& file)
   std::sort(files.begin(), files.end());
   files.insert(files.begin(), file);
   if (const auto robot = cell.peek("robot")) {
-    append_drive_files((file.parent_path() / robot->text()).lexically_normal(), files);
+    append_profiles((file.parent_path() / robot->text()).lexically_normal(), files);
   }
   return files;
 }

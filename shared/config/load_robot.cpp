@@ -16,6 +16,7 @@
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/load_motor.h"
+#include "shared/config/sensor_file.h"
 #include "shared/config/urdf_chain.h"
 #include "shared/config/yaml_value.h"
 #include "shared/ports/arm.h"
@@ -134,23 +135,6 @@ void read_joints(const Value& value, const std::string& urdf, std::set<std::int6
   }
 }
 
-ForceTorqueSensor read_sensor(const Value& value, std::set<std::int64_t>& nodes) {
-  const Map map(value, {"node", "force_per_count_N", "torque_per_count_Nm", "force_range_N",
-                        "torque_range_Nm", "force_noise_N", "torque_noise_Nm"});
-  ForceTorqueSensor sensor;
-  sensor.node = read_node(map.at("node"), nodes);
-  sensor.force_per_count_N = map.number("force_per_count_N", positive_to(100.0));
-  sensor.torque_per_count_Nm = map.number("torque_per_count_Nm", positive_to(100.0));
-  // A reading is a signed 16-bit count.
-  sensor.force_range_N =
-      map.number("force_range_N", positive_to(32767.0 * sensor.force_per_count_N));
-  sensor.torque_range_Nm =
-      map.number("torque_range_Nm", positive_to(32767.0 * sensor.torque_per_count_Nm));
-  sensor.force_noise_N = map.number("force_noise_N", {0.0, sensor.force_range_N});
-  sensor.torque_noise_Nm = map.number("torque_noise_Nm", {0.0, sensor.torque_range_Nm});
-  return sensor;
-}
-
 void read_bus(const Value& value, std::set<std::int64_t>& nodes, Robot& robot) {
   const Map map(value, {"bitrate_bps", "cycle_us", "heartbeat_ms", "heartbeat_timeout_ms",
                         "master_node", "targets_per_frame"});
@@ -203,8 +187,9 @@ Robot load_robot(const std::filesystem::path& file) {
   const bool mit = protocol && protocol->choice({"canopen", "mit"}) == 1;
   robot.brakes = !mit;
   read_joints(map.at("joints"), urdf, nodes, mit ? nullptr : &drives, robot.joints);
-  robot.sensor = read_sensor(map.at("sensor"), nodes);
+  robot.sensor = config::read_sensor(map.at("sensor"), file, nodes);
   read_bus(map.at("bus"), nodes, robot);
+  config::read_sample_period(map.at("sensor"), robot.cycle_us, robot.sensor);
 
   const Map arm(map.at("arm"), {"response_lag_s", "stiffness_Npm", "measurement_delay_cycles"});
   robot.response_lag_s = read_response_lag_s(arm.at("response_lag_s"), robot);

@@ -7,7 +7,7 @@ namespace tenon {
 ContactLoop contact_loop(const Cell& cell) {
   const Robot& robot = cell.robot;
   return {cell.contact_stiffness_Npm, 1e-6 * robot.cycle_us, robot.measurement_delay_cycles,
-          robot.response_lag_s};
+          robot.response_lag_s, robot.sensor.cycles_per_sample};
 }
 
 double damping_least_Nspm(const ContactLoop& loop) {

@@ -20,14 +20,17 @@ struct ContactLoop {
   double cycle_s = 2e-3;  ///< T
   int delay_cycles = 1;   ///< n, age of a force sample when it is used
   double lag_s = 0.0;     ///< tau_arm, from a setpoint to the motion; two cycles are CANopen's own
+  int sample_cycles = 1;  ///< m, a new force sample every so many cycles
 
-  /// tau = (n + 1/2) T + tau_arm; half a cycle for the setpoint that is held.
-  [[nodiscard]] double latency_s() const { return (delay_cycles + 0.5) * cycle_s + lag_s; }
-  /// (n + 1) T + (n + 3) T + tau_arm: the longest time from F_on at the tool to the stop's first
+  /// tau = (n + m/2) T + tau_arm; half of the time for which a sample is held.
+  [[nodiscard]] double latency_s() const {
+    return (delay_cycles + 0.5 * sample_cycles) * cycle_s + lag_s;
+  }
+  /// (n + m) T + (n + 3) T + tau_arm: the longest time from F_on at the tool to the stop's first
   /// effect, with a late wake-up just before the touch. More of them at one touch are the force
   /// fault's.
   [[nodiscard]] double blind_s() const {
-    return (delay_cycles + 1 + shaken_cycles(delay_cycles)) * cycle_s + lag_s;
+    return (delay_cycles + sample_cycles + shaken_cycles(delay_cycles)) * cycle_s + lag_s;
   }
 };
 
@@ -45,7 +48,7 @@ struct ContactLoop {
 [[nodiscard]] double mass_most_kg(const ContactLoop& loop, double damping_Nspm);
 
 /// What the force can rise to when the tool meets the contact at a speed, N: the larger of
-/// F_on + k_e v (2 (n + 2) T + tau_arm + M / D) and 1.5 F_on, with which a guarded move presses
+/// F_on + k_e v ((2 n + m + 3) T + tau_arm + M / D) and 1.5 F_on, with which a guarded move presses
 /// while it confirms a contact. The second counts for gentle touches alone. Measured against the
 /// virtual arm in tests/chain/contact_force_test.cpp.
 [[nodiscard]] double peak_force_N(const ContactLoop& loop, const Compliance& compliance,

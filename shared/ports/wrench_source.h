@@ -17,6 +17,7 @@ struct WrenchHalf {
   std::uint8_t place = 0;  ///< 0: raw values 0 to 2, 1: raw values 3 to 5
   std::array<std::int16_t, 3> raw{};
   std::uint16_t counter = 0;  ///< the same in both halves of a sample
+  std::uint16_t status = 0;   ///< what the sensor says of its health, in its own terms; 0: well
 };
 
 /// Real-time: no allocation, no throw, no clock. One thread.
@@ -33,8 +34,15 @@ class WrenchSource {
   WrenchSource& operator=(const WrenchSource&) = delete;
   virtual ~WrenchSource() = default;
 
-  /// Reads a frame of the bus. @param half written where the answer is kHalf
-  [[nodiscard]] virtual Taken take(const CanFrame& frame, WrenchHalf& half) noexcept = 0;
+  /// Forgets all that was heard.
+  virtual void reset() noexcept {}
+  /// A cycle begins. @return what the sensor is to be sent, if more than that makes it take a
+  /// sample and one is due
+  [[nodiscard]] virtual std::optional<CanFrame> begin_cycle() noexcept { return std::nullopt; }
+  /// Reads a frame of the bus. @param time_ns when it came  @param half written where the answer is
+  /// kHalf
+  [[nodiscard]] virtual Taken take(const CanFrame& frame, std::int64_t time_ns,
+                                   WrenchHalf& half) noexcept = 0;
   /// The force that a half alone tells, sensor axes, N; none where it takes both halves.
   [[nodiscard]] virtual std::optional<Vector3> force_N(const WrenchHalf& half) const noexcept = 0;
   /// Six raw values as a wrench: sensor axes, N and Nm.

@@ -102,6 +102,14 @@ TEST(FaultTable, BoundsInCyclesAreTheRobots) {
   EXPECT_EQ(of_arm(ArmFaultKind::kBusDown), 2);
   EXPECT_EQ(bound_cycles(*fault_row(EndReason::kWrenchMissing), robot), 5 + 8 + 2);
   EXPECT_EQ(bound_cycles(*fault_row(EndReason::kPlanFailed), robot), std::nullopt);
+
+  EXPECT_EQ(of_arm(ArmFaultKind::kSensorStale), 8);
+  EXPECT_EQ(of_arm(ArmFaultKind::kSensorInvalid), 2);
+  robot.sensor.cycles_per_sample = 3;
+  EXPECT_EQ(of_arm(ArmFaultKind::kSensorStale), 6 * 3 + 2);
+  EXPECT_EQ(of_arm(ArmFaultKind::kSensorInvalid), 3 + 1);
+  EXPECT_EQ(bound_cycles(*fault_row(EndReason::kWrenchFrozen), robot), 7 * 3 + 2);
+  EXPECT_EQ(of_arm(ArmFaultKind::kBusDown), 2);
 }
 
 TEST(FaultTable, AMaskTakesAwayItsRowAlone) {

@@ -27,7 +27,7 @@ TEST(PlanCheck, TheLatencyIsRefusedWithBothNumbers) {
   plan.latency_max_s = 0.002;
   EXPECT_EQ(
       refusal(plan, hand_made_cell()),
-      "latency (n + 1/2) T + tau_arm = (1 + 0.5) * 0.002 + 0 = 0.003 s, the plan allows at most "
+      "latency (n + m/2) T + tau_arm = (1 + 0.5) * 0.002 + 0 = 0.003 s, the plan allows at most "
       "0.002 s");
 }
 
@@ -54,10 +54,9 @@ TEST(PlanCheck, APeakForceAboveTheCellsFaultIsRefused) {
   plan.parameter_sets[0].speeds.contact_mps = 0.1;
   plan.parameter_sets[0].speeds.approach_mps = 0.2;
   // 6 + 5e4 * 0.1 * (0.012 + 0 + 0.002) = 76 N, of which 40 N are a late wake-up's
-  EXPECT_EQ(
-      refusal(plan, hand_made_cell()),
-      "parameter set 0: peak force F_on + k_e v (2 (n + 2) T + tau_arm + M / D) = 6 + 50000 * 0.1 "
-      "* (0.012 + 0 + 0.002) = 76 N, must be at most force_fault_N = 60 N");
+  EXPECT_EQ(refusal(plan, hand_made_cell()),
+            "parameter set 0: peak force F_on + k_e v ((2 n + m + 3) T + tau_arm + M / D) = 6 + "
+            "50000 * 0.1 * (0.012 + 0 + 0.002) = 76 N, must be at most force_fault_N = 60 N");
 }
 
 TEST(PlanCheck, AnOnThresholdInTheSensorsNoiseIsRefused) {
@@ -114,10 +113,9 @@ TEST(PlanCheck, ATurnIsHeldAgainstTheSameRulesWhereTheCellKnowsWhatItMeets) {
   plan.compliance.inertia_kgm2 = 0.01;
   plan.parameter_sets[0].speeds.contact_radps = 1.0;
   // 0.6 + 1000 * 1 * (0.012 + 0.002)
-  EXPECT_EQ(
-      refusal(plan, cell),
-      "parameter set 0: peak torque T_on + k_e w (2 (n + 2) T + tau_arm + I / D) = 0.6 + 1000 * "
-      "1 * 0.014 = 14.6 Nm, must be at most torque_fault_Nm = 10 Nm");
+  EXPECT_EQ(refusal(plan, cell),
+            "parameter set 0: peak torque T_on + k_e w ((2 n + m + 3) T + tau_arm + I / D) = 0.6 + "
+            "1000 * 1 * 0.014 = 14.6 Nm, must be at most torque_fault_Nm = 10 Nm");
 }
 
 TEST(PlanCheck, AnEndThatIsNotAboutTheGoalIsRefused) {

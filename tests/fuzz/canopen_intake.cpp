@@ -147,7 +147,7 @@ class Operation {
     supervision_.check_sending(bus_.status());
     check();
     now_ns_ += 2 * kMillisecond_ns;
-    intake_.open_cycle(now_ns_, bus_);
+    (void)intake_.open_cycle(now_ns_, bus_);
     output_.send_sync();
     check();
   }

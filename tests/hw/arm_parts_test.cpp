@@ -70,7 +70,7 @@ using ArmSupervisionAlone = ArmParts;
 using ArmOutputAlone = ArmParts;
 
 TEST_F(ArmIntakeAlone, ACycleIsCompleteWithEveryJointAndBothHalvesOfTheWrench) {
-  intake.open_cycle(kNow_ns, master);
+  (void)intake.open_cycle(kNow_ns, master);
   hear_all(kReady);
   intake.take(wrench_half(0x181, 100, 1), kNow_ns);
   EXPECT_FALSE(intake.complete());
@@ -85,14 +85,15 @@ TEST_F(ArmIntakeAlone, ACycleIsCompleteWithEveryJointAndBothHalvesOfTheWrench) {
 }
 
 TEST_F(ArmIntakeAlone, WhatComesAfterACycleIsLateAndAJointsIsNotTheNextOnes) {
-  intake.open_cycle(kNow_ns, master);
+  (void)intake.open_cycle(kNow_ns, master);
   EXPECT_TRUE(intake.close_cycle());
   EXPECT_FALSE(intake.close_cycle()) << "none is open any more";
   hear_all(kReady);
   EXPECT_EQ(counters.late_frames, 3U);
   ASSERT_EQ(listener.send(wrench_half(0x181, 1, 1)), SendResult::kSent);
   ASSERT_EQ(listener.send(wrench_half(0x182, 1, 1)), SendResult::kSent);
-  intake.open_cycle(kNow_ns, master);  // takes both in: a wrench that came late is still the newest
+  (void)intake.open_cycle(kNow_ns,
+                          master);  // takes both in: a wrench that came late is still the newest
   EXPECT_EQ(counters.late_frames, 5U);
   EXPECT_EQ(intake.feedback().joints_fresh, 0U);
   EXPECT_TRUE(intake.feedback().wrench_fresh);

@@ -58,6 +58,17 @@ TEST(BringUp, GivesTheSensorTheHighestPriority) {
   EXPECT_EQ(objects[0x1A0004].value, 0x20010010u);
   EXPECT_EQ(objects[0x1A0103].value, 0x64010610u);
   EXPECT_EQ(objects[0x1A0100].value, 4u);
+  EXPECT_EQ(objects[0x180002].value, 1u);
+}
+
+TEST(BringUp, ASlowSensorIsAskedByEveryThirdSync) {
+  Robot robot = gantry_robot();
+  robot.sensor.cycles_per_sample = 3;
+  GantryOnBus gantry(robot);
+  ASSERT_TRUE(gantry.prepare());
+  EXPECT_EQ(gantry.nodes[3]->objects[0x180002].value, 3u);
+  EXPECT_EQ(gantry.nodes[3]->objects[0x180102].value, 3u);
+  EXPECT_EQ(gantry.nodes[0]->objects[0x180002].value, 1u);
 }
 
 TEST(BringUp, EveryNmtTransitionLeavesAndIsConfirmed) {

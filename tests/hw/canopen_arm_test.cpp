@@ -291,6 +291,32 @@ TEST(CanopenArm, RepeatedSampleIsNotFresh) {
   EXPECT_EQ(gantry.arm.fault().kind, ArmFaultKind::kSensorStale);
 }
 
+//  cycle      1  2  3  4  5  6
+//  wrench     -  -  x  -  -  x       m = 3: all of these cycles are complete
+TEST(CanopenArm, ASensorSlowerThanTheCycleIsHeardInEveryThirdAndNamedAfterFiveMissingSamples) {
+  Robot robot = gantry_robot();
+  robot.sensor.cycles_per_sample = 3;
+  GantryOnBus gantry(robot);
+  ASSERT_TRUE(gantry.prepare_and_enable());
+  int fresh = 0;
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_TRUE(gantry.cycle(ArmRequest::kEnabled));
+    fresh += gantry.feedback.wrench_fresh ? 1 : 0;
+  }
+  EXPECT_EQ(fresh, 10);
+  EXPECT_EQ(gantry.arm.counters().wrenches_missing, 0u);
+  while (!gantry.feedback.wrench_fresh) gantry.cycle(ArmRequest::kEnabled);
+  gantry.nodes[3]->answers_sync = false;
+  for (int i = 0; i < 15; ++i) EXPECT_EQ(gantry.cycle(ArmRequest::kEnabled), i < 2) << i;
+  EXPECT_EQ(gantry.arm.state(), ArmState::kEnabled);
+  EXPECT_EQ(gantry.arm.counters().wrenches_missing, 5u);
+  gantry.cycle(ArmRequest::kEnabled);
+  EXPECT_EQ(gantry.arm.fault().kind, ArmFaultKind::kSensorStale);
+  EXPECT_EQ(describe(gantry.arm.fault(), gantry.robot),
+            "node 4 (force/torque sensor): no new wrench in 16 cycles in a row, at most 15 are "
+            "allowed; check that the sensor samples at least once in 3 cycles of 2000 us");
+}
+
 TEST(CanopenArm, SaturatedWrenchIsAFaultNotAValue) {
   GantryOnBus gantry;
   ASSERT_TRUE(gantry.prepare_and_enable());

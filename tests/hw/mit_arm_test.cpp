@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -261,6 +262,53 @@ TEST(MitArm, SaysAtItsStartThatNoBrakeHoldsIt) {
   const auto lines = start_remarks(mit6().robot);
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_NE(lines[0].find("20 ms after the executor has died"), std::string::npos) << lines[0];
+}
+
+/// mit6 with a Robotous RFT whose identifiers are no motor's, or with an ATI NETCANOEM board.
+Cell with_sensor(SensorProtocol protocol) {
+  Cell cell = mit6();
+  ForceTorqueSensor& sensor = cell.robot.sensor;
+  sensor.protocol = protocol;
+  sensor.profile = "another";
+  sensor.node = 0;
+  const bool streams = sensor.streams();
+  sensor.request_id = streams ? 0x64 : 0x170;
+  sensor.sample_ids = streams ? std::array<std::uint32_t, 2>{0x41, 0x42}
+                              : std::array<std::uint32_t, 2>{0x170, 0x171};
+  sensor.rate_hz = streams ? 200 : 0;
+  sensor.cycles_per_sample = 2;
+  return cell;
+}
+
+/// What is counted as late in enabling and 500 cycles.
+std::uint64_t late_frames(Bench& bench) {
+  EXPECT_TRUE(bench.enable()) << fault_text(bench.arm.fault(), bench.cell.robot);
+  bench.cycles(500);
+  EXPECT_EQ(bench.arm.state(), ArmState::kEnabled);
+  return bench.arm.counters().late_frames;
+}
+
+TEST(MitArm, WorksWithSensorsThatAreNoCanopenNodes) {
+  Bench with_node;
+  const std::uint64_t late_with_node = late_frames(with_node);
+  for (const auto protocol : {SensorProtocol::kRobotousRft, SensorProtocol::kAtiNetcanoem}) {
+    const Cell cell = with_sensor(protocol);
+    Bench bench(cell, cell);
+    EXPECT_EQ(late_frames(bench), late_with_node);  // answers to the stops, and none of the sensor
+    EXPECT_EQ(bench.arm.counters().wrenches_missing, 0U);
+    EXPECT_EQ(bench.arm.counters().wrench_halves_torn, 0U);
+    EXPECT_NO_THROW(check_bus_load(cell.robot));
+    EXPECT_NO_THROW(check_response_times(cell.robot));
+  }
+}
+
+TEST(MitArm, NamesASensorThatDoesNotStart) {
+  Cell told = with_sensor(SensorProtocol::kRobotousRft);
+  Bench bench(told);  // where a CANopen node stands
+  EXPECT_FALSE(bench.enable());
+  EXPECT_EQ(bench.arm.fault().kind, ArmFaultKind::kNoAnswer);
+  EXPECT_NE(fault_text(bench.arm.fault(), told.robot).find("no answer to set rate (0Fh) on 0x041"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ ScriptedNode::ScriptedNode(Kind kind, std::uint8_t node, CanBus& bus)
 
 void ScriptedNode::reset_communication() {
   nmt_state = 0x7F;
+  syncs_ = 0;
   objects[0x100000] = {4, kind_ == Kind::kDrive ? 0x00020192u : 0x00000194u};
   objects[0x101801] = {4, 0x0000ABCD};
   objects[0x101700] = {2, 0};
@@ -168,6 +169,8 @@ void ScriptedNode::act(unsigned number, const CanFrame& frame) {
 
 void ScriptedNode::on_sync() {
   if (kind_ == Kind::kSensor) {
+    if (++syncs_ < objects[0x180002].value) return;
+    syncs_ = 0;
     if (answers_sync) send_wrench();
     return;
   }

@@ -83,6 +83,7 @@ class ScriptedNode {
   std::uint8_t node_;
   CanBus& bus_;
   int quick_stop_steps_ = 0;
+  std::uint32_t syncs_ = 0;  ///< of a sensor, since its last wrench
   std::int64_t next_heartbeat_ns_ = 0;
   std::array<std::optional<CanFrame>, 2> pending_;  ///< synchronous RPDOs since the last SYNC
 };

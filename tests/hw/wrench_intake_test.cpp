@@ -7,6 +7,7 @@
 #include "hw/arm/describe_fault.h"
 #include "hw/arm/saturation_fault.h"
 #include "hw/sensors/canopen_wrench_source.h"
+#include "hw/sensors/wrench_staleness.h"
 
 namespace tenon::hw {
 namespace {
@@ -39,12 +40,13 @@ class WrenchIntakeOfCanopenNode : public testing::Test {
 };
 
 TEST_F(WrenchIntakeOfCanopenNode, TwoFramesAreAWrenchInNewtonsAndTheForceIsKnownWithTheFirst) {
-  EXPECT_EQ(intake.take(canopen_force_frame()), Taken::kHalf);
+  (void)intake.begin_cycle();
+  EXPECT_EQ(intake.take(canopen_force_frame(), 0), Taken::kHalf);
   ASSERT_TRUE(intake.force_N());
   EXPECT_TRUE(intake.force_N()->isApprox(Vector3(1.0, -0.02, 2.56)));
   EXPECT_FALSE(intake.sample());
-  EXPECT_FALSE(intake.both_halves_seen());
-  EXPECT_EQ(intake.take(canopen_torque_frame()), Taken::kHalf);
+  EXPECT_FALSE(intake.answered());
+  EXPECT_EQ(intake.take(canopen_torque_frame(), 0), Taken::kHalf);
   EXPECT_FALSE(intake.force_N());
   ASSERT_TRUE(intake.sample());
   Vector6 expected;
@@ -52,13 +54,13 @@ TEST_F(WrenchIntakeOfCanopenNode, TwoFramesAreAWrenchInNewtonsAndTheForceIsKnown
   EXPECT_TRUE(intake.sample()->wrench.isApprox(expected));
   EXPECT_EQ(intake.sample()->counter, 0x0201);
   EXPECT_FALSE(intake.saturated());
-  EXPECT_TRUE(intake.both_halves_seen());
+  EXPECT_TRUE(intake.answered());
 }
 
 TEST_F(WrenchIntakeOfCanopenNode, ARepeatedSampleIsNone) {
   for (const bool fresh : {true, false}) {
-    (void)intake.take(canopen_force_frame());
-    (void)intake.take(canopen_torque_frame());
+    (void)intake.take(canopen_force_frame(), 0);
+    (void)intake.take(canopen_torque_frame(), 0);
     EXPECT_EQ(intake.sample().has_value(), fresh);
   }
   EXPECT_EQ(intake.torn(), 0U);
@@ -67,14 +69,59 @@ TEST_F(WrenchIntakeOfCanopenNode, ARepeatedSampleIsNone) {
 TEST_F(WrenchIntakeOfCanopenNode, HalvesOfTwoSamplesAreTornAndNoWrench) {
   CanFrame torque = canopen_torque_frame();
   torque.data[6] = 0x02;
-  (void)intake.take(canopen_force_frame());
-  (void)intake.take(torque);
+  (void)intake.take(canopen_force_frame(), 0);
+  (void)intake.take(torque, 0);
   EXPECT_FALSE(intake.sample());
-  EXPECT_TRUE(intake.both_halves_seen());
+  EXPECT_TRUE(intake.answered());
   EXPECT_EQ(intake.torn(), 1U);
   intake.reset();
-  EXPECT_FALSE(intake.both_halves_seen());
+  (void)intake.begin_cycle();
+  EXPECT_FALSE(intake.answered());
   EXPECT_EQ(intake.torn(), 0U);
+}
+
+//  cycle   1   2   3   4   5   6   7
+//  sample          x           -   x      m = 3; the one of cycle 6 comes late
+TEST(WrenchIntakeOfASlowSensor, IsWaitedForInTheCyclesInWhichASampleIsDue) {
+  ForceTorqueSensor sensor = intake_test_sensor();
+  sensor.cycles_per_sample = 3;
+  CanopenWrenchSource source(sensor, {0x181, 0x182});
+  WrenchIntake intake(source, sensor);
+  CanFrame force = canopen_force_frame();
+  CanFrame torque = canopen_torque_frame();
+  const bool due[] = {false, false, true, false, false, true, true};
+  for (int cycle = 1; cycle <= 7; ++cycle) {
+    (void)intake.begin_cycle();
+    EXPECT_EQ(intake.answered(), !due[cycle - 1]) << "cycle " << cycle;
+    if (cycle != 3 && cycle != 7) continue;
+    (void)intake.take(force, 0);
+    EXPECT_FALSE(intake.answered()) << "half a wrench";
+    (void)intake.take(torque, 0);
+    EXPECT_TRUE(intake.sample());
+    EXPECT_TRUE(intake.answered());
+    ++force.data[6];
+    ++torque.data[6];
+  }
+}
+
+TEST(WrenchStaleness, ASensorOwesAsManySamplesHoweverLongTheyTake) {
+  for (const int cycles_per_sample : {1, 3}) {
+    ForceTorqueSensor sensor;
+    sensor.cycles_per_sample = cycles_per_sample;
+    WrenchStaleness wrench(sensor);
+    int missing = 0;
+    int cycles = 0;
+    for (; !wrench.stale(); ++cycles) {
+      EXPECT_LE(wrench.cycles(), WrenchStaleness::cycles_max(sensor));
+      wrench.update(false);
+      missing += wrench.missing() ? 1 : 0;
+    }
+    EXPECT_EQ(cycles, 5 * cycles_per_sample + 1);
+    EXPECT_EQ(missing, cycles_per_sample == 1 ? 6 : 5);
+    wrench.update(true);
+    EXPECT_FALSE(wrench.stale());
+    EXPECT_FALSE(wrench.missing());
+  }
 }
 
 TEST_F(WrenchIntakeOfCanopenNode, TheFirstAxisAtTheEndOfItsRangeIsNamed) {
@@ -83,8 +130,8 @@ TEST_F(WrenchIntakeOfCanopenNode, TheFirstAxisAtTheEndOfItsRangeIsNamed) {
   torque.data[3] = 0x75;
   torque.data[4] = 0x00;  // tz: -32768 counts
   torque.data[5] = 0x80;
-  (void)intake.take(canopen_force_frame());
-  (void)intake.take(torque);
+  (void)intake.take(canopen_force_frame(), 0);
+  (void)intake.take(torque, 0);
   ASSERT_TRUE(intake.saturated());
   EXPECT_EQ(intake.saturated()->place, 4);
   EXPECT_EQ(intake.saturated()->raw, 30000);
@@ -95,28 +142,28 @@ TEST_F(WrenchIntakeOfCanopenNode, AForceAtTheEndOfItsRangeIsNamedByItsHalfAlone)
   CanFrame force = canopen_force_frame();
   force.data[2] = 0xD0;  // fy: -30000 counts, -300 N
   force.data[3] = 0x8A;
-  (void)intake.take(force);
+  (void)intake.take(force, 0);
   EXPECT_FALSE(intake.sample());
   ASSERT_TRUE(intake.saturated());
   EXPECT_EQ(intake.saturated()->place, 1);
   EXPECT_EQ(intake.saturated()->reading, -300.0);
-  (void)intake.take(canopen_force_frame());
+  (void)intake.take(canopen_force_frame(), 0);
   EXPECT_FALSE(intake.saturated());
 }
 
 TEST_F(WrenchIntakeOfCanopenNode, FramesOfOthersAndOfAnotherLengthBringNothing) {
   CanFrame frame = canopen_force_frame();
   frame.id = 0x183;
-  EXPECT_EQ(intake.take(frame), Taken::kForeign);
+  EXPECT_EQ(intake.take(frame, 0), Taken::kForeign);
   frame.id = 0x181;
   frame.extended = true;
-  EXPECT_EQ(intake.take(frame), Taken::kForeign);
+  EXPECT_EQ(intake.take(frame, 0), Taken::kForeign);
   frame.extended = false;
   frame.remote = true;
-  EXPECT_EQ(intake.take(frame), Taken::kForeign);
+  EXPECT_EQ(intake.take(frame, 0), Taken::kForeign);
   frame.remote = false;
   frame.length = 7;
-  EXPECT_EQ(intake.take(frame), Taken::kMalformed);
+  EXPECT_EQ(intake.take(frame, 0), Taken::kMalformed);
   EXPECT_FALSE(intake.force_N());
   EXPECT_FALSE(intake.sample());
 }
@@ -124,7 +171,8 @@ TEST_F(WrenchIntakeOfCanopenNode, FramesOfOthersAndOfAnotherLengthBringNothing) 
 /// Big-endian values in one identifier, first half or second by its last byte; no force by itself.
 class HandMadeWrenchSource final : public WrenchSource {
  public:
-  [[nodiscard]] Taken take(const CanFrame& frame, WrenchHalf& half) noexcept override {
+  [[nodiscard]] Taken take(const CanFrame& frame, std::int64_t /*time_ns*/,
+                           WrenchHalf& half) noexcept override {
     if (frame.id != 0x50) return Taken::kForeign;
     half.place = frame.data[7];
     half.counter = frame.data[6];
@@ -147,10 +195,10 @@ class HandMadeWrenchSource final : public WrenchSource {
 TEST(WrenchIntake, TheRangeOfASensorOfAnotherLayoutIsThatOfItsWrenchAndNotOfItsRawValues) {
   HandMadeWrenchSource source;
   WrenchIntake intake(source, intake_test_sensor());
-  EXPECT_EQ(intake.take({0x50, false, false, 8, {0x00, 0x01, 0x00, 0x02, 0x00, 0x03, 9, 0}}),
+  EXPECT_EQ(intake.take({0x50, false, false, 8, {0x00, 0x01, 0x00, 0x02, 0x00, 0x03, 9, 0}}, 0),
             Taken::kHalf);
   EXPECT_FALSE(intake.force_N());
-  EXPECT_EQ(intake.take({0x50, false, false, 8, {0x00, 0x04, 0x00, 0x05, 0x01, 0x2C, 9, 1}}),
+  EXPECT_EQ(intake.take({0x50, false, false, 8, {0x00, 0x04, 0x00, 0x05, 0x01, 0x2C, 9, 1}}, 0),
             Taken::kHalf);
   ASSERT_TRUE(intake.sample());
   EXPECT_DOUBLE_EQ(intake.sample()->wrench[0], 300.0);  // raw value 5 is 012Ch
@@ -165,8 +213,8 @@ TEST(WrenchIntake, AFaultTellsTheReadingOfTheWrenchAndNotARawValueScaled) {
   robot.sensor = intake_test_sensor();
   HandMadeWrenchSource source;
   WrenchIntake intake(source, robot.sensor);
-  (void)intake.take({0x50, false, false, 8, {0x00, 0x01, 0x00, 0x02, 0x00, 0x03, 9, 0}});
-  (void)intake.take({0x50, false, false, 8, {0x00, 0x04, 0x00, 0x05, 0xFE, 0xD4, 9, 1}});
+  (void)intake.take({0x50, false, false, 8, {0x00, 0x01, 0x00, 0x02, 0x00, 0x03, 9, 0}}, 0);
+  (void)intake.take({0x50, false, false, 8, {0x00, 0x04, 0x00, 0x05, 0xFE, 0xD4, 9, 1}}, 0);
   ASSERT_TRUE(intake.saturated());
   EXPECT_EQ(describe(saturation_fault(4, *intake.saturated()), robot),
             "node 4 (force/torque sensor): fx = -300.00 N is at or beyond the range of 300.00; the "
@@ -181,8 +229,8 @@ TEST(WrenchIntake, ARawValueAtItsEndIsToldAsThatAndAsNoAxis) {
   robot.sensor.torque_range_Nm = 0.0;
   HandMadeWrenchSource source;
   WrenchIntake intake(source, robot.sensor);
-  (void)intake.take({0x50, false, false, 8, {0x00, 0x01, 0x00, 0x02, 0x00, 0x03, 9, 0}});
-  (void)intake.take({0x50, false, false, 8, {0x00, 0x04, 0x80, 0x00, 0x00, 0x06, 9, 1}});
+  (void)intake.take({0x50, false, false, 8, {0x00, 0x01, 0x00, 0x02, 0x00, 0x03, 9, 0}}, 0);
+  (void)intake.take({0x50, false, false, 8, {0x00, 0x04, 0x80, 0x00, 0x00, 0x06, 9, 1}}, 0);
   ASSERT_TRUE(intake.saturated());
   EXPECT_EQ(describe(saturation_fault(4, *intake.saturated()), robot),
             "node 4 (force/torque sensor): its raw value 5 of 6 is -32768, the end of its 16 bits; "

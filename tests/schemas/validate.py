@@ -17,6 +17,7 @@ FILES = {
     "cell": "hw/cells/*.yaml",
     "robot": "hw/robots/*/*.yaml",
     "drive": "hw/drives/*.yaml",
+    "sensor": "hw/sensors/*.yaml",
     "experiment": "sim/experiments/*.yaml",
 }
 # (kind, file, path of keys, what is put there)
@@ -32,6 +33,9 @@ MISTAKES = [
     ("robot", "hw/robots/gantry3/robot.yaml", ["bus", "bitrate_bps"], 333),
     ("robot", "hw/robots/gantry3/robot.yaml", ["joints", 0, "kp_Nmprad"], 1),
     ("drive", "hw/drives/maxon_epos4.yaml", ["objects", "9999h"], "absent"),
+    ("robot", "hw/robots/gantry3/robot.yaml", ["sensor", "node"], None),
+    ("sensor", "hw/sensors/robotous_rft.yaml", ["rate_hz"], 250),
+    ("sensor", "hw/sensors/robotous_rft.yaml", ["identifiers", "first"], 2048),
     ("experiment", "sim/experiments/box_on_table.yaml", ["friction"], 0.3),
 ]
 

@@ -15,6 +15,7 @@
 #include "shared/base/error.h"
 #include "shared/config/drive_file.h"
 #include "shared/config/load.h"
+#include "shared/config/sensor_file.h"
 #include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
 
@@ -164,7 +165,8 @@ std::vector<std::filesystem::path> yaml_files(const std::filesystem::path& folde
 class Schemas : public testing::Test {
  protected:
   Schemas() {
-    for (const char* folder : {"hw/cells", "hw/robots", "hw/drives", "planner/tasks"}) {
+    for (const char* folder :
+         {"hw/cells", "hw/robots", "hw/drives", "hw/sensors", "planner/tasks"}) {
       std::filesystem::create_directories(scratch.path() / folder);
       std::filesystem::copy(in_tree(folder), scratch.path() / folder,
                             std::filesystem::copy_options::recursive);
@@ -246,7 +248,17 @@ TEST_F(Schemas, AnExperimentHasTheKeysThatItsLoaderKnows) {
 }
 
 TEST_F(Schemas, ARobotHasTheKeysThatItsLoaderKnows) {
-  hold("robot", "hw/robots", [](const auto& file) { static_cast<void>(load_robot(file)); });
+  std::string polled = scratch.get("hw/robots/gantry3/robot.yaml");
+  polled.erase(polled.find("sensor:"));
+  polled.replace(polled.find("gantry3.urdf"), 0, "gantry3/");
+  polled += "sensor: {profile: ../sensors/robotous_rft.yaml, identifiers: {first: 0x21}}\n";
+  hold("robot", "hw/robots", [](const auto& file) { static_cast<void>(load_robot(file)); },
+       {polled});
+}
+
+TEST_F(Schemas, ASensorHasTheKeysThatItsLoaderKnows) {
+  hold("sensor", "hw/sensors",
+       [](const auto& file) { static_cast<void>(config::read_sensor_profile(file)); });
 }
 
 }  // namespace

@@ -29,7 +29,13 @@ Cell hand_made_cell() {
   cell.robot.cycle_us = 2000;
   cell.robot.measurement_delay_cycles = 1;
   cell.robot.response_lag_s = 0.0;
-  cell.robot.sensor = {4, 0.01, 0.001, 200.0, 20.0, 0.1, 1e-4};
+  cell.robot.sensor = {.node = 4,
+                       .force_per_count_N = 0.01,
+                       .torque_per_count_Nm = 0.001,
+                       .force_range_N = 200.0,
+                       .torque_range_Nm = 20.0,
+                       .force_noise_N = 0.1,
+                       .torque_noise_Nm = 1e-4};
   const double yaw_rad = std::numbers::pi / 6;
   cell.X_BT = {Vector3(0.02, -0.01, -0.10), turn(yaw_rad, Vector3::UnitZ())};
   cell.X_FP = {Vector3(0.0, 0.0, -0.12), turn(yaw_rad, Vector3::UnitZ())};

@@ -12,6 +12,8 @@
 #include "sim/cell/devices/drive_402.h"
 #include "sim/cell/devices/force_torque_node.h"
 #include "sim/cell/devices/mit_drive.h"
+#include "sim/cell/devices/netcanoem_sensor.h"
+#include "sim/cell/devices/rft_sensor.h"
 
 namespace tenon::sim {
 namespace {
@@ -68,6 +70,19 @@ VirtualDrives virtual_drives(const Robot& robot, const std::map<std::uint8_t, De
     drives.push_back(std::move(drive));
   }
   return drives;
+}
+
+std::unique_ptr<VirtualSensor> virtual_sensor(const ForceTorqueSensor& sensor, std::uint64_t seed,
+                                              const SensorImperfections& imperfections) {
+  switch (sensor.protocol) {
+    case SensorProtocol::kNode:
+      break;
+    case SensorProtocol::kAtiNetcanoem:
+      return std::make_unique<NetcanoemSensor>(sensor, seed, imperfections);
+    case SensorProtocol::kRobotousRft:
+      return std::make_unique<RftSensor>(sensor, seed, imperfections);
+  }
+  return std::make_unique<ForceTorqueNode>(sensor, seed, imperfections);
 }
 
 std::vector<EdsFile> eds_files(const Robot& robot) {

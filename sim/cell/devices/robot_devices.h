@@ -11,6 +11,8 @@
 #include "shared/eds/device_file.h"
 #include "sim/cell/devices/drive_parameters.h"
 #include "sim/cell/devices/virtual_drive.h"
+#include "sim/cell/devices/virtual_sensor.h"
+#include "sim/cell/devices/wrench_sampler.h"
 
 namespace tenon::sim {
 
@@ -26,6 +28,10 @@ using VirtualDrives = std::vector<std::unique_ptr<VirtualDrive>>;
 /// @throws InputError for a twin of no joint
 [[nodiscard]] VirtualDrives virtual_drives(const Robot& robot,
                                            const std::map<std::uint8_t, DeviceFile>& twins);
+
+/// The force/torque sensor that the robot file names.
+[[nodiscard]] std::unique_ptr<VirtualSensor> virtual_sensor(
+    const ForceTorqueSensor& sensor, std::uint64_t seed, const SensorImperfections& imperfections);
 
 struct EdsFile {
   std::string name;  ///< "1-drive-x.eds", "4-sensor.eds"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "shared/base/error.h"
@@ -9,7 +10,6 @@
 #include "shared/task/find_start.h"
 #include "shared/task/inserted.h"
 #include "shared/task/pose_error.h"
-#include "sim/cell/devices/force_torque_node.h"
 #include "sim/cell/devices/robot_devices.h"
 #include "sim/cell/faults/bus_faults.h"
 #include "sim/cell/faults/fault_spec.h"
@@ -24,8 +24,8 @@ namespace {
 constexpr double kOverlapMax_m = 1e-5;
 constexpr double kStandstill = 1e-4;  // m/s or rad/s
 
-ForceTorqueNode::Imperfections sensor_imperfections(const WorldDraw& world) {
-  ForceTorqueNode::Imperfections imperfections;
+SensorImperfections sensor_imperfections(const WorldDraw& world) {
+  SensorImperfections imperfections;
   imperfections.force_drift_N_sqrts = world.force_drift_N_sqrts;
   imperfections.torque_drift_Nm_sqrts = world.torque_drift_Nm_sqrts;
   return imperfections;
@@ -47,7 +47,8 @@ std::vector<Fault> pending_faults(const Robot& robot, const std::vector<Fault>& 
     }
     const bool of_joint = std::any_of(robot.joints.begin(), robot.joints.end(),
                                       [&](const Joint& joint) { return joint.node == fault.node; });
-    if (of_joint || fault.node == robot.sensor.node) continue;
+    const bool nobodys = fault.node == 0 && target_of(fault.kind) != FaultTarget::kSensor;
+    if (of_joint || (fault.node == robot.sensor.node && !nobodys)) continue;
     throw InputError(std::string("fault ") + to_string(fault.kind) + ": node " +
                      std::to_string(fault.node) + " is neither a joint nor the sensor of robot " +
                      robot.name);
@@ -87,7 +88,8 @@ class VirtualCell::Impl {
         phases_(options.phases != nullptr ? *options.phases : own_phases_),
         arm_(cell_, real_task(task, options.world), arm_parameters(cell, cell_, task, options)),
         drives_(virtual_drives(cell.robot, options.twins)),
-        sensor_(cell_.robot.sensor, options.seed, sensor_imperfections(options.world)),
+        sensor_(
+            virtual_sensor(cell_.robot.sensor, options.seed, sensor_imperfections(options.world))),
         delay_(cell.robot.joints.size(), delay_steps(options)),
         cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us) {
     check_faults();
@@ -112,7 +114,7 @@ class VirtualCell::Impl {
   void physics_step();
   void inject_faults();
   void deliver(const CanFrame& frame, std::int64_t now_ns);
-  void sample_sensor();
+  void pass_wrench();
   void send(CanBus& bus, bool arbitrate);
   [[nodiscard]] VirtualDrive::Measurement measure(std::size_t i) const;
   /// Of physics, since the cell was switched on.
@@ -130,7 +132,7 @@ class VirtualCell::Impl {
   FaultPhases& phases_;
   ArmBody arm_;
   VirtualDrives drives_;
-  ForceTorqueNode sensor_;
+  std::unique_ptr<VirtualSensor> sensor_;
   DemandDelay delay_;
 
   bool on_ = false;
@@ -165,7 +167,7 @@ void VirtualCell::Impl::power_on(std::int64_t now_ns) {
   on_ns_ = physics_ns_ = now_ns;
   for (const auto& drive : drives_) drive->power_on(now_ns);
   watch_.power_on();
-  sensor_.node().power_on(now_ns);
+  sensor_->power_on(now_ns);
 }
 
 void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
@@ -180,27 +182,30 @@ void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
       // Several at once: the caller is late. They came a cycle apart, and act so.
       --syncs_left;
       advance_physics(now_ns - syncs_left * cycle_ns_);
-      sample_sensor();
     }
+    if (sensor_->is_asked_by(frame)) pass_wrench();
     deliver(frame, now_ns);
     send(bus, is_sync(frame));
   }
   advance_physics(now_ns);
   for (const auto& drive : drives_) drive->advance(now_ns);
-  sensor_.advance(now_ns);
+  sensor_->advance(now_ns);
   send(bus, false);
   watch_.look_at_drives(time_ns());
 }
 
 void VirtualCell::Impl::deliver(const CanFrame& frame, std::int64_t now_ns) {
   for (const auto& drive : drives_) drive->receive(frame, now_ns);
-  sensor_.node().receive(frame, now_ns);
+  sensor_->receive(frame, now_ns);
 }
 
 void VirtualCell::Impl::advance_physics(std::int64_t now_ns) {
   while (physics_ns_ + options_.physics_step_ns <= now_ns) {
     inject_faults();
     physics_step();
+    if (!sensor_->is_due(physics_ns_)) continue;
+    pass_wrench();
+    sensor_->stream(physics_ns_);
   }
 }
 
@@ -241,7 +246,7 @@ void VirtualCell::Impl::inject_faults() {
     for (std::size_t i = 0; i < drives_.size(); ++i) {
       if (cell_.robot.joints[i].node == fault.node) drives_[i]->inject(fault);
     }
-    if (cell_.robot.sensor.node == fault.node) sensor_.inject(fault);
+    if (cell_.robot.sensor.node == fault.node) sensor_->inject(fault);
     watch_.events().add(time_ns(), "fault " + std::string(to_string(fault.kind)) + ", node " +
                                        std::to_string(fault.node));
   }
@@ -254,9 +259,9 @@ VirtualDrive::Measurement VirtualCell::Impl::measure(std::size_t i) const {
           state.velocity * joint.counts_per_unit, kPermille * state.effort / joint.rated_effort};
 }
 
-void VirtualCell::Impl::sample_sensor() {
+void VirtualCell::Impl::pass_wrench() {
   if (wrench_count_ == 0) return;
-  sensor_.measured(wrench_sum_ / wrench_count_, wrench_count_ * options_.physics_step_ns);
+  sensor_->measured(wrench_sum_ / wrench_count_, wrench_count_ * options_.physics_step_ns);
   wrench_sum_ = Vector6::Zero();
   wrench_count_ = 0;
 }
@@ -264,7 +269,7 @@ void VirtualCell::Impl::sample_sensor() {
 void VirtualCell::Impl::send(CanBus& bus, bool arbitrate) {
   outgoing_.clear();
   for (const auto& drive : drives_) drive->take(outgoing_);
-  sensor_.node().take(outgoing_);
+  sensor_->take(outgoing_);
   // Frames that become ready together leave by priority.
   if (arbitrate) {
     std::stable_sort(outgoing_.begin(), outgoing_.end(),
