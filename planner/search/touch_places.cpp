@@ -17,8 +17,12 @@ namespace {
 constexpr double kFacing = 0.9994;
 // Of one patch: no farther apart along the push.
 constexpr double kFlat_m = 1e-5;
-// The most patches of a solid that are worth a push each.
+// The most patches of a solid that are worth a push each: of all, and of those that a push from
+// outside meets first. The largest faces of a housing may all be inside of it.
 constexpr std::size_t kMaxPatches = 3;
+constexpr std::size_t kMaxOuterPatches = 3;
+// Of so many of the largest it is asked whether anything stands before them.
+constexpr std::size_t kMaxAsked = 16;
 // Places on a patch are looked for on a grid of so many by so many.
 constexpr int kGrid = 24;
 
@@ -38,6 +42,8 @@ struct Patch {
 double cross(const Flat& o, const Flat& a, const Flat& b) {
   return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
 }
+
+double area_m2(const FlatTriangle& t) { return 0.5 * std::abs(cross(t[0], t[1], t[2])); }
 
 bool inside(const FlatTriangle& t, const Flat& p) {
   const double a = cross(t[0], t[1], p);
@@ -59,11 +65,12 @@ double distance(const FlatEdge& e, const Flat& p) {
 /// Of a solid's triangles those that face against a push, joined where they share an edge.
 class Patches {
  public:
-  Patches(const Shape& shape, int axis, int sign) : axis_(axis), sign_(sign) {
-    for (const Vector3& point_m : shape.solid->mesh().points_m) {
+  Patches(const Shape& shape, int axis, int sign)
+      : solid_(shape.solid->mesh()), axis_(axis), sign_(sign) {
+    for (const Vector3& point_m : solid_.points_m) {
       points_m_.push_back(shape.pose.position_m + shape.pose.orientation * point_m);
     }
-    for (const Triangle& triangle : shape.solid->mesh().triangles) {
+    for (const Triangle& triangle : solid_.triangles) {
       if (faces(triangle)) triangles_.push_back(triangle);
     }
     patch_of_.resize(triangles_.size());
@@ -77,7 +84,7 @@ class Patches {
       Patch& patch = patches[root(i)];
       const FlatTriangle& flat =
           patch.triangles.emplace_back(FlatTriangle{seen(i, 0), seen(i, 1), seen(i, 2)});
-      patch.area_m2 += 0.5 * std::abs(cross(flat[0], flat[1], flat[2]));
+      patch.area_m2 += area_m2(flat);
       patch.along_m = corner_m(i, 0)[axis_];
     }
     for (const auto& [edge, sides] : edges_) {
@@ -91,11 +98,47 @@ class Patches {
     for (auto& [first, patch] : patches) largest.push_back(std::move(patch));
     std::stable_sort(largest.begin(), largest.end(),
                      [](const Patch& a, const Patch& b) { return a.area_m2 > b.area_m2; });
-    if (largest.size() > kMaxPatches) largest.resize(kMaxPatches);
-    return largest;
+    return worth_a_push(std::move(largest));
   }
 
  private:
+  /// Of patches, the largest first, the first few and the first few outer ones, in that order.
+  [[nodiscard]] std::vector<Patch> worth_a_push(std::vector<Patch> largest) const {
+    std::vector<Patch> taken;
+    std::size_t outer = 0;
+    for (std::size_t i = 0; i < std::min(largest.size(), kMaxAsked); ++i) {
+      const bool one_more = outer < kMaxOuterPatches && is_outer(largest[i]);
+      outer += one_more;
+      if (i < kMaxPatches || one_more) taken.push_back(std::move(largest[i]));
+    }
+    return taken;
+  }
+
+  /// Nothing of the solid stands before the middle of the patch's largest triangle.
+  [[nodiscard]] bool is_outer(const Patch& patch) const {
+    const FlatTriangle& t = *std::max_element(
+        patch.triangles.begin(), patch.triangles.end(),
+        [](const FlatTriangle& a, const FlatTriangle& b) { return area_m2(a) < area_m2(b); });
+    const Flat middle = {(t[0][0] + t[1][0] + t[2][0]) / 3.0, (t[0][1] + t[1][1] + t[2][1]) / 3.0};
+    return std::none_of(
+        solid_.triangles.begin(), solid_.triangles.end(), [&](const Triangle& other) {
+          const FlatTriangle flat = {seen(other[0]), seen(other[1]), seen(other[2])};
+          return area_m2(flat) > 0.0 && inside(flat, middle) &&
+                 sign_ * (patch.along_m - along_m(other, flat, middle)) > kFlat_m;
+        });
+  }
+
+  /// Where a line along the push through a place meets a triangle's plane.
+  [[nodiscard]] double along_m(const Triangle& triangle, const FlatTriangle& flat,
+                               const Flat& place) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double part = cross(place, flat[(i + 1) % 3], flat[(i + 2) % 3]);
+      sum += part * points_m_[triangle[i]][axis_];
+    }
+    return sum / cross(flat[0], flat[1], flat[2]);
+  }
+
   [[nodiscard]] bool faces(const Triangle& t) const {
     const Vector3 normal =
         (points_m_[t[1]] - points_m_[t[0]]).cross(points_m_[t[2]] - points_m_[t[0]]);
@@ -132,6 +175,7 @@ class Patches {
     return seen(triangles_[triangle][corner]);
   }
 
+  const TriangleMesh& solid_;
   int axis_;
   int sign_;
   std::vector<Vector3> points_m_;

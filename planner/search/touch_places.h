@@ -14,9 +14,10 @@ struct TouchPlace {
   double to_rim_m = 0.0;  ///< from there to where the side ends
 };
 
-/// A side of a box or a cylinder as far as its corners reach; of a solid its flat patches, the
-/// largest first. The place on a patch is where its rim is far: of all that are farther from it
-/// than `enough_m` the one nearest to `near_m`, else the farthest.
+/// A side of a box or a cylinder as far as its corners reach; of a solid its largest flat
+/// patches and the largest of those that nothing of it stands before, the largest first. The place
+/// on a patch is where its rim is far: of all that are farther from it than `enough_m` the one
+/// nearest to `near_m`, else the farthest.
 /// @param axis 0..2 of the push  @param sign +1 or -1, its direction
 [[nodiscard]] std::vector<TouchPlace> touch_places(const Shape& shape, int axis, int sign,
                                                    double enough_m, const Vector3& near_m);

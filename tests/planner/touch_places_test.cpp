@@ -81,6 +81,31 @@ TEST(TouchPlaces, SidesThatFaceTheSameWayAreOnePlaceEachTheLargestFirst) {
   EXPECT_GT(places[0].area_m2, places[1].area_m2);
 }
 
+TEST(TouchPlaces, AnOuterSideIsFoundBehindAnyNumberOfLargerInnerOnes) {
+  // A comb that lies on its back, 100 mm high: four slots between teeth, open above. Against +x
+  // its inner sides are 90 mm high each, and its outer one is cut down to 20 mm by a step inwards.
+  Profile comb = {{-0.060, 0.0}, {0.060, 0.0}, {0.060, 0.1}};
+  for (int tooth = 4; tooth >= 0; --tooth) {
+    const double left_m = -0.050 + 0.02 * tooth;
+    comb.emplace_back(left_m, 0.1);
+    comb.emplace_back(left_m, tooth == 0 ? 0.02 : 0.01);
+    if (tooth > 0) {
+      comb.emplace_back(left_m - 0.01, 0.01);
+      comb.emplace_back(left_m - 0.01, 0.1);
+    }
+  }
+  comb.emplace_back(-0.060, 0.02);
+  const auto places = touch_places(drawn_out(comb, 0.03, {}), 0, +1, 1.0, Vector3::Zero());
+  ASSERT_FALSE(places.empty());
+  const auto outer = std::count_if(places.begin(), places.end(), [](const TouchPlace& place) {
+    return place.at_m.x() < -0.0599;
+  });
+  EXPECT_EQ(outer, 1);
+  EXPECT_TRUE(std::is_sorted(
+      places.begin(), places.end(),
+      [](const TouchPlace& a, const TouchPlace& b) { return a.area_m2 > b.area_m2; }));
+}
+
 TEST(TouchPlaces, ObliqueSidesFaceNoPush) {
   const Shape u = drawn_out(kU, 0.03, {Vector3::Zero(), rotation_of({0.0, 0.0, 0.3})});
   EXPECT_TRUE(touch_places(u, 0, +1, 1.0, Vector3::Zero()).empty());
