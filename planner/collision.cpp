@@ -4,6 +4,7 @@
 
 #include "planner/belief/belief.h"
 #include "shared/base/text.h"
+#include "shared/task/spread.h"
 
 namespace tenon::planner {
 namespace {
@@ -26,9 +27,9 @@ std::string collision(const Task& task, const Start& start, Rollout& rollout) {
       std::find_if(belief.particles.begin(), belief.particles.end(),
                    [&](const Particle& particle) { return rollout.in_collision(particle.tool()); });
   if (inside != belief.particles.end()) {
-    return what + where(inside->tool().position_m) +
-           format(", %g standard deviations out,", task.particle_sigmas) + overlaps +
-           ": move the start or lower its sigma";
+    return what + where(inside->tool().position_m) + ", " + reach_text(task) + "," + overlaps +
+           ": move the start or lower its " +
+           (task.errors == Distribution::kUniform ? "bounds" : "sigma");
   }
   if (!rollout.in_collision(task.goal)) return {};
   return "the goal of task '" + task.name + "' at " + where(task.goal.position_m) + overlaps +

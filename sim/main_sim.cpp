@@ -186,7 +186,7 @@ int simulate(const CommandLine& line) {
   if (!line.offset.empty()) options.offset = sim::parse_offset(line.offset, task.coordinates);
   if (line.seed) {
     const Start& start = start_or_first(task, line.start);
-    options.offset = sim::draw_offset(start, task.coordinates, *line.seed);
+    options.offset = sim::draw_offset(task, start, *line.seed);
     std::printf("seed %llu\n", static_cast<unsigned long long>(*line.seed));
   }
   if (!line.experiment.empty()) {

@@ -5,6 +5,7 @@
 #include "planner/check/understood.h"
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
+#include "shared/task/spread.h"
 
 namespace tenon::planner {
 namespace {
@@ -87,8 +88,7 @@ std::string check_text(const std::string& file, const Task& task, const TaskChec
         text += ", in collision\n";
         continue;
       }
-      text += format(", %zu particles %g standard deviations out: ", checked.particles.size(),
-                     task.particle_sigmas) +
+      text += format(", %zu particles ", checked.particles.size()) + reach_text(task) + ": " +
               spread_text(start, task) + touches_text(task, start, checked) + "\n";
     }
   }

@@ -8,6 +8,7 @@
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/task/inserted.h"
+#include "shared/task/spread.h"
 
 namespace tenon::planner {
 namespace {
@@ -120,18 +121,19 @@ class Checker {
       int axis = 0;
       off.cwiseAbs().maxCoeff(&axis);
       const int sign = off[axis] < 0.0 ? -1 : 1;
-      std::string text = what + format(" is free, but %g standard deviations out along %s%s",
-                                       task_.particle_sigmas, sign_text(sign), axis_name(axis));
+      std::string text = what + " is free, but " + reach_text(task_) +
+                         format(" along %s%s", sign_text(sign), axis_name(axis));
       const auto way_m = axis < 3 ? probe_.way_to_touch(start.pose, axis, sign, std::abs(off[axis]))
                                   : std::nullopt;
       if (way_m) {
         text += format(" the part would be %.3g mm inside ", 1e3 * (std::abs(off[axis]) - *way_m)) +
                 probe_.met_at(tool) +
-                format(": move the start, or lower its sigma there from %g to %.3g m",
-                       start.sigma[axis], *way_m / task_.particle_sigmas);
+                format(": move the start, or lower its %s there from %g to %.3g m",
+                       error_key(task_, axis), stated_error(task_, start, axis),
+                       *way_m / std::abs(off[axis]) * stated_error(task_, start, axis));
       } else {
         text += " the part stands in " + probe_.met_at(tool) +
-                ": move the start or lower its sigma there";
+                format(": move the start or lower its %s there", error_key(task_, axis));
       }
       add(Weight::kRefused, text);
       return false;
@@ -148,9 +150,10 @@ class Checker {
       add(Weight::kDoubt,
           "start '" + start.name + "' has nothing to touch along " + axis_name(axis) +
               format(" within %.3g m: only a contact tells where the part is along it. It takes a "
-                     "face across %s, wider than the start's spread, or a smaller sigma there than "
+                     "face across %s, wider than the start's spread, or a smaller %s there than "
                      "%g m",
-                     push_reach_m(task_), axis_name(axis), start.sigma[axis]));
+                     push_reach_m(task_), axis_name(axis), error_key(task_, axis),
+                     stated_error(task_, start, axis)));
     }
   }
 

@@ -1,17 +1,14 @@
 #include "planner/judge/judged_starts.h"
 
-#include <cmath>
-
 #include "planner/belief/belief.h"
 #include "shared/base/random.h"
+#include "shared/task/spread.h"
 
 namespace tenon::planner {
 namespace {
 
 // A start whose every draw collides is no start; the planner has refused it before.
 constexpr int kAttempts = 1000;
-
-double reach_sigmas(const Task& task) { return task.particle_sigmas + 1.0; }
 
 /// Lowest and highest friction, no latency and the longest, with the part as large as it may be,
 /// then as drawn where that is something else.
@@ -31,25 +28,26 @@ std::vector<PhysicalParameters> corners(const Plan& plan, const Task& task) {
 }
 
 JudgedStart draw_place(Random& random, const Task& task, const Start& start, Rollout& rollout) {
+  const bool uniform = task.errors == Distribution::kUniform;
   JudgedStart drawn;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     Vector6 offset = Vector6::Zero();
-    double squares = 0.0;
     for (int axis = 0; axis < 6; ++axis) {
       if (!has(task.coordinates, axis) || start.sigma[axis] == 0.0) continue;
-      const double z = random.normal();
-      squares += z * z;
+      const double z =
+          uniform ? task.particle_sigmas * (2.0 * random.uniform() - 1.0) : random.normal();
       offset[axis] = z * start.sigma[axis];
     }
     drawn.particle = particle_off(offset, task, start, {});
-    drawn.mahalanobis = std::sqrt(squares);
-    if (drawn.mahalanobis > reach_sigmas(task)) continue;
+    drawn.sigmas_out = sigmas_out(task, start, offset);
+    if (drawn.sigmas_out > drawn_sigmas(task)) continue;
     if (!rollout.in_collision(drawn.particle.tool())) break;
   }
   return drawn;
 }
 
-/// Unit vectors along every uncertain coordinate both ways, and to every corner between them.
+/// Along every uncertain coordinate both ways, and to every corner between them: unit vectors, and
+/// the corners of a box where errors are uniform.
 std::vector<Vector6> rim_directions(const Task& task, const Start& start) {
   std::vector<int> axes;
   for (int axis = 0; axis < 6; ++axis) {
@@ -66,7 +64,7 @@ std::vector<Vector6> rim_directions(const Task& task, const Start& start) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
       direction[axes[i]] = (corner >> i & 1U) != 0 ? 1.0 : -1.0;
     }
-    directions.push_back(direction.normalized());
+    directions.push_back(task.errors == Distribution::kUniform ? direction : direction.normalized());
   }
   return directions;
 }
@@ -116,11 +114,12 @@ std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task, const
 
 std::vector<JudgedStart> rim_starts(const Plan& plan, const Task& task, const Start& start,
                                     Rollout& rollout) {
+  if (drawn_sigmas(task) <= task.particle_sigmas) return {};
   std::vector<PhysicalParameters> largest;
   for (const PhysicalParameters& one : corners(plan, task)) {
     if (one.oversize_m == task.oversize_m) largest.push_back(one);
   }
-  return starts_at(reach_sigmas(task), largest, task, start, rollout);
+  return starts_at(drawn_sigmas(task), largest, task, start, rollout);
 }
 
 }  // namespace tenon::planner

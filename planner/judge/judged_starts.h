@@ -12,7 +12,7 @@ namespace tenon::planner {
 
 struct JudgedStart {
   Particle particle;
-  double mahalanobis = 0.0;  ///< how far out it is, standard deviations
+  double sigmas_out = 0.0;  ///< see shared/task/spread.h
 };
 
 /// What of friction, size and latency the draws have.
@@ -21,20 +21,21 @@ enum class DrawnPhysics : std::uint8_t {
   kCorners,  ///< every second draw at one of the corners of these ranges, in turn
 };
 
-/// Normal starts out to c_p + 1 standard deviations; farther ones, and those in collision, are
-/// drawn again. @param rollout asked for collisions
+/// Normal starts out to c_p + 1 standard deviations, or uniform ones; farther ones, and those in
+/// collision, are drawn again. @param rollout asked for collisions
 [[nodiscard]] std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count,
                                                     DrawnPhysics physics, const Plan& plan,
                                                     const Task& task, const Start& start,
                                                     Rollout& rollout);
 
-/// On the rim of the particles' reach, c_p standard deviations out, along every uncertain
-/// coordinate both ways and to every corner between them; each at all corners of friction, size and
-/// latency.
+/// On the rim of the particles' reach, c_p standard deviations out or at the bounds, along every
+/// uncertain coordinate both ways and to every corner between them; each at all corners of
+/// friction, size and latency.
 [[nodiscard]] std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task,
                                                      const Start& start, Rollout& rollout);
 
-/// Likewise where drawing ends, one standard deviation farther, with the largest part.
+/// Likewise where drawing ends, one standard deviation farther, with the largest part; none where
+/// errors are uniform.
 [[nodiscard]] std::vector<JudgedStart> rim_starts(const Plan& plan, const Task& task,
                                                   const Start& start, Rollout& rollout);
 

@@ -129,7 +129,7 @@ std::vector<Draw> PathJudge::drawn(const Plan& plan, std::uint64_t seed) {
   const auto starts = drawn_starts(seed, parameters_.draws, DrawnPhysics::kCorners, plan, task_,
                                    start_, pool_.front());
   return run(plan, starts, [this](const Draw& draw) {
-    return !draw.at_goal && draw.mahalanobis <= task_.particle_sigmas;
+    return !draw.at_goal && draw.sigmas_out <= task_.particle_sigmas;
   });
 }
 

@@ -16,7 +16,7 @@ Refutation refutation_of(const Certification& certification) {
 
 Refutation refutation_of(const Draw& missed, const Task& task) {
   return {missed.chain, std::nullopt,
-          format("a start %.2f sigma out missed the goal at ", missed.mahalanobis) +
+          format("a start %.2f sigma out missed the goal at ", missed.sigmas_out) +
               corner_name(missed.chain.start.physics, task)};
 }
 

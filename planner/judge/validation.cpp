@@ -21,7 +21,7 @@ bool ends_at_goal(const Chain& chain, const Task& task) {
 
 const Draw* missed_draw(std::span<const Draw> draws, double sigmas) {
   const auto missed = std::find_if(draws.begin(), draws.end(), [sigmas](const Draw& draw) {
-    return !draw.at_goal && draw.mahalanobis <= sigmas;
+    return !draw.at_goal && draw.sigmas_out <= sigmas;
   });
   return missed == draws.end() ? nullptr : &*missed;
 }
@@ -43,12 +43,12 @@ std::size_t Validation::at_goal() const { return arrived(draws); }
 
 std::size_t Validation::within(double sigmas) const {
   return static_cast<std::size_t>(std::count_if(
-      draws.begin(), draws.end(), [&](const Draw& d) { return d.mahalanobis <= sigmas; }));
+      draws.begin(), draws.end(), [&](const Draw& d) { return d.sigmas_out <= sigmas; }));
 }
 
 std::size_t Validation::at_goal_within(double sigmas) const {
   return static_cast<std::size_t>(std::count_if(draws.begin(), draws.end(), [&](const Draw& d) {
-    return d.at_goal && d.mahalanobis <= sigmas;
+    return d.at_goal && d.sigmas_out <= sigmas;
   }));
 }
 
@@ -70,7 +70,7 @@ std::vector<Draw> run_starts(const Plan& plan, const Task& task,
   pool.run(starts.size(), [&](Rollout& rollout, std::size_t i) {
     if (i > last) return;
     Draw& draw = draws[i];
-    draw.mahalanobis = starts[i].mahalanobis;
+    draw.sigmas_out = starts[i].sigmas_out;
     draw.chain = run_chain(rollout, plan, starts[i].particle, task.rollout_step_us);
     draw.at_goal = ends_at_goal(draw.chain, task);
     if (!until || !until(draw)) return;

@@ -17,7 +17,7 @@
 namespace tenon::planner {
 
 struct Draw {
-  double mahalanobis = 0.0;  ///< how far out the start is, standard deviations
+  double sigmas_out = 0.0;  ///< how far out the start is, see shared/task/spread.h
   Chain chain;
   /// The plan was done and its tool inserted, within d_tol of the goal. Else the draw counts as
   /// missed.
@@ -33,7 +33,7 @@ struct Validation {
   std::vector<Draw> rim;
 
   [[nodiscard]] std::size_t at_goal() const;
-  /// Those within `sigmas` standard deviations, and how many of them ended at the goal.
+  /// Those at most `sigmas` standard deviations out, and how many of them ended at the goal.
   [[nodiscard]] std::size_t within(double sigmas) const;
   [[nodiscard]] std::size_t at_goal_within(double sigmas) const;
 };

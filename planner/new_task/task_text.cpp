@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "shared/base/text.h"
 
@@ -54,8 +53,6 @@ struct Numbers {
   double goal_z_m = 0.0;
   double start_z_m = 0.0;
   double tolerance_m = 0.0;
-  double sigma_m = 0.0;
-  double sigma_rad = 0.0;
 };
 
 Numbers numbers_of(const NewTask& task) {
@@ -67,11 +64,9 @@ Numbers numbers_of(const NewTask& task) {
   n.goal_z_m = std::min(kFreeMax_m, kFreeOfDepth * task.fit.depth_m);
   n.tolerance_m =
       std::clamp(kToleranceOfDepth * task.fit.depth_m, kToleranceMin_m, kToleranceMax_m);
-  n.sigma_m = task.uniform_m / std::numbers::sqrt3;
-  n.sigma_rad = task.uniform_rad / std::numbers::sqrt3;
   // A turned part reaches deeper by its own size.
-  const double turned_m = 3.0 * n.sigma_rad * task.plug.solid->size_m().maxCoeff();
-  n.start_z_m = task.fit.clear_m + 3.0 * n.sigma_m + turned_m + kAbove_m;
+  const double turned_m = task.uniform_rad * task.plug.solid->size_m().maxCoeff();
+  n.start_z_m = task.fit.clear_m + task.uniform_m + turned_m + kAbove_m;
   return n;
 }
 
@@ -106,19 +101,18 @@ std::string shapes_text(const NewTask& task, const Numbers& n) {
 }
 
 std::string start_text(const NewTask& task, const Numbers& n) {
-  const bool turns = n.sigma_rad > 0.0;
+  const bool turns = task.uniform_rad > 0.0;
   std::string text = format(
-      "\n# The start, above everything. Anything within %.3g mm an axis is as likely: a standard "
-      "deviation of\n# that over sqrt(3). Three of them reach the corners of that cube.\n"
-      "starts:\n  - name: \"1\"\n    pose: %s\n    sigma_m: [%.6g, %.6g, %.6g]\n",
-      1e3 * task.uniform_m, pose_text({{0.0, 0.0, n.start_z_m}, {1.0, 0.0, 0.0, 0.0}}).c_str(),
-      n.sigma_m, n.sigma_m, n.sigma_m);
+      "\n# The start, above everything. Any error within these bounds is as likely.\n"
+      "starts:\n  - name: \"1\"\n    pose: %s\n    uniform_m: [%.6g, %.6g, %.6g]\n",
+      pose_text({{0.0, 0.0, n.start_z_m}, {1.0, 0.0, 0.0, 0.0}}).c_str(), task.uniform_m,
+      task.uniform_m, task.uniform_m);
   if (turns) {
-    text += format(task.fit.yaw_matters ? "    sigma_rad: [%.6g, %.6g, %.6g]\n"
-                                        : "    sigma_rad: [%.6g, %.6g]\n",
-                   n.sigma_rad, n.sigma_rad, n.sigma_rad);
+    text += format(task.fit.yaw_matters ? "    uniform_rad: [%.6g, %.6g, %.6g]\n"
+                                        : "    uniform_rad: [%.6g, %.6g]\n",
+                   task.uniform_rad, task.uniform_rad, task.uniform_rad);
   }
-  return text + "particle_sigmas: 3\n";
+  return text;
 }
 
 std::string goal_text(const NewTask& task, const Numbers& n) {
@@ -186,7 +180,7 @@ std::string findings(const NewTask& task) {
 
 std::string task_text(const NewTask& task) {
   const Numbers n = numbers_of(task);
-  const bool turns = n.sigma_rad > 0.0;
+  const bool turns = task.uniform_rad > 0.0;
   const char* rotations = task.fit.yaw_matters ? ", rx, ry, rz" : ", rx, ry";
   return "# Written by tenon-plan --new-task from two parts. Measured:\n#\n" +
          commented(findings(task)) + "\nname: " + task.name + "\ncoordinates: [x, y, z" +

@@ -14,6 +14,7 @@
 #include "shared/drawing/page.h"
 #include "shared/drawing/view.h"
 #include "shared/task/find_start.h"
+#include "shared/task/spread.h"
 
 namespace tenon::planner {
 namespace {
@@ -105,8 +106,8 @@ std::string start_section(const Task& task, const StartCheck& checked) {
   if (start == nullptr) return {};
   std::string html = "<section class='picture'><h2>Start " + drawing::escaped(start->name) +
                      "</h2>\n<p>At " + mm(start->pose.position_m) + " mm; the particles, " +
-                     format("%g standard deviations out: ", task.particle_sigmas) +
-                     drawing::escaped(spread_text(*start, task)) + ".</p>\n";
+                     reach_text(task) + ": " + drawing::escaped(spread_text(*start, task)) +
+                     ".</p>\n";
   for (const drawing::View& view : drawing::views_of(task.coordinates)) {
     html += picture(task, *start, checked, view);
   }

@@ -103,7 +103,7 @@ std::string page_json(const ReportData& data) {
   json["draws"] = Json::array();
   for (const Draw& draw : data.validation.draws) {
     Json entry = json_of(data, draw.chain);
-    entry["sigmas"] = rounded(draw.mahalanobis);
+    entry["sigmas"] = rounded(draw.sigmas_out);
     entry["at_goal"] = draw.at_goal;
     json["draws"].push_back(std::move(entry));
   }

@@ -8,6 +8,7 @@
 #include "shared/base/text.h"
 #include "shared/base/wilson.h"
 #include "shared/task/inserted.h"
+#include "shared/task/spread.h"
 
 namespace tenon::planner {
 namespace {
@@ -85,7 +86,7 @@ std::vector<std::string> missed(const PlanReport& report, const Task& task) {
                      shown(chain.end().orientation.angularDistance(task.goal.orientation), 3)) +
                   (inserted(task, chain.end()) ? "" : ", not inserted")
             : format("step %zu: ", chain.steps.back()) + chain.failure;
-    lines.push_back(format("%.2f sigma out, ", draw.mahalanobis) + what);
+    lines.push_back(format("%.2f sigma out, ", draw.sigmas_out) + what);
   }
   return lines;
 }
@@ -102,11 +103,11 @@ std::string cost_text(const Plan& plan) {
 std::string estimate_text(const Validation& validation, const Task& task) {
   const std::size_t count = validation.draws.size();
   const Interval interval = wilson_interval(validation.at_goal(), count);
-  return format(
-      "%zu of %zu draws end at the goal (95 %%: %.1f to %.1f %%), %zu of %zu within %g sigma",
-      validation.at_goal(), count, 1e2 * interval.low, 1e2 * interval.high,
-      validation.at_goal_within(task.particle_sigmas), validation.within(task.particle_sigmas),
-      task.particle_sigmas);
+  return format("%zu of %zu draws end at the goal (95 %%: %.1f to %.1f %%), %zu of %zu ",
+                validation.at_goal(), count, 1e2 * interval.low, 1e2 * interval.high,
+                validation.at_goal_within(task.particle_sigmas),
+                validation.within(task.particle_sigmas)) +
+         within_text(task, task.particle_sigmas);
 }
 
 std::string corners_text(const Validation& validation, const Task& task) {
@@ -119,9 +120,8 @@ std::string corners_text(const Validation& validation, const Task& task) {
   if (task.oversize_m > 0.0) {
     physics += format(", the part as drawn and %g mm larger", 1e3 * task.oversize_m);
   }
-  return format("%zu of %zu starts %g sigma out end at the goal, at ", arrived(validation.corners),
-                validation.corners.size(), task.particle_sigmas) +
-         physics;
+  return format("%zu of %zu starts ", arrived(validation.corners), validation.corners.size()) +
+         reach_text(task) + " end at the goal, at " + physics;
 }
 
 std::string step_table(const Plan& plan) {
@@ -166,9 +166,11 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
   text += "validation: " + estimate_text(report.validation, task) +
           format(", peak force %.0f N\n", peak_force_N(report));
   text += "corners: " + corners_text(report.validation, task) + "\n";
-  text += format("beyond the promise: %zu of %zu starts %g sigma out end there too\n",
-                 arrived(report.validation.rim), report.validation.rim.size(),
-                 task.particle_sigmas + 1.0);
+  if (!report.validation.rim.empty()) {
+    text +=
+        format("beyond the promise: %zu of %zu starts %g sigma out end there too\n",
+               arrived(report.validation.rim), report.validation.rim.size(), drawn_sigmas(task));
+  }
   for (const std::string& draw : missed(report, task)) text += "missed: " + draw + "\n";
   for (const std::string& change : report.adapted) text += "for the cell: " + change + "\n";
   for (const std::string& refusal : report.refusals) text += "refuted: " + refusal + "\n";

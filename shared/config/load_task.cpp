@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "shared/base/fnv.h"
@@ -24,6 +25,7 @@ using config::positive_to;
 using config::Value;
 
 constexpr std::size_t kStartsMax = 200;
+constexpr double kBoundOverSigma = std::numbers::sqrt3;  // of a uniform distribution
 constexpr std::uint8_t kTranslations = 0b000111;
 constexpr std::uint8_t kRotations = 0b111000;
 constexpr std::uint8_t kAllAxes = kTranslations | kRotations;
@@ -44,8 +46,8 @@ CoordinateMask read_axes(const Value& value) {
 }
 
 /// One number for each search coordinate of a kind, in the order x y z or rx ry rz.
-void read_sigma(const Map& map, const char* key, int first_axis, CoordinateMask coordinates,
-                Vector6& sigma) {
+void read_errors(const Map& map, const char* key, int first_axis, CoordinateMask coordinates,
+                 Vector6& error) {
   std::size_t count = 0;
   for (int axis = first_axis; axis < first_axis + 3; ++axis) count += has(coordinates, axis);
   if (count == 0) {
@@ -55,18 +57,49 @@ void read_sigma(const Map& map, const char* key, int first_axis, CoordinateMask 
   const std::vector<Value> values = map.at(key).list(count, count);
   auto next = values.begin();
   for (int axis = first_axis; axis < first_axis + 3; ++axis) {
-    if (has(coordinates, axis)) sigma[axis] = (next++)->number(positive_to(1.0));
+    if (has(coordinates, axis)) error[axis] = (next++)->number(positive_to(1.0));
   }
 }
 
+Map start_map(const Value& value) {
+  return {value, {"name", "pose", "sigma_m", "sigma_rad", "uniform_m", "uniform_rad"}};
+}
+
+/// The first start's keys decide for all.
+Distribution distribution_of(const Value& start) {
+  const Map map = start_map(start);
+  return map.find("uniform_m") || map.find("uniform_rad") ? Distribution::kUniform : Distribution::kNormal;
+}
+
+void read_reach(const Map& map, Task& task) {
+  map.optional_number("particle_sigmas", positive_to(5.0), task.particle_sigmas);
+  if (task.errors == Distribution::kNormal) return;
+  if (const auto given = map.find("particle_sigmas")) {
+    given->refuse(
+        "counts standard deviations of normal errors (sigma_m, sigma_rad); a plan for "
+        "uniform ones holds to their bounds");
+  }
+  task.particle_sigmas = kBoundOverSigma;
+}
+
 Start read_start(const Value& value, const Task& task, std::set<std::string>& names) {
-  const Map map(value, {"name", "pose", "sigma_m", "sigma_rad"});
+  const Map map = start_map(value);
   Start start;
   start.name = map.at("name").name();
   if (!names.insert(start.name).second) map.at("name").refuse_value("unique among the starts");
   start.pose = map.at("pose").pose();
-  read_sigma(map, "sigma_m", 0, task.coordinates, start.sigma);
-  read_sigma(map, "sigma_rad", 3, task.coordinates, start.sigma);
+  const bool uniform = task.errors == Distribution::kUniform;
+  for (const char* other :
+       {uniform ? "sigma_m" : "uniform_m", uniform ? "sigma_rad" : "uniform_rad"}) {
+    if (const auto given = map.find(other)) {
+      given->refuse(
+          "normal errors (sigma_m, sigma_rad) and uniform ones (uniform_m, uniform_rad) do "
+          "not mix in a task");
+    }
+  }
+  read_errors(map, uniform ? "uniform_m" : "sigma_m", 0, task.coordinates, start.sigma);
+  read_errors(map, uniform ? "uniform_rad" : "sigma_rad", 3, task.coordinates, start.sigma);
+  if (uniform) start.sigma /= kBoundOverSigma;
 
   // Nothing moves the tool along the other axes.
   const Vector6 way = displacement_between(start.pose, task.goal);
@@ -253,13 +286,15 @@ Task load_task(const std::filesystem::path& name) {
 
   read_goal(map.at("goal"), task);
   std::set<std::string> start_names;
-  for (const Value& start : map.at("starts").list(1, kStartsMax)) {
+  const std::vector<Value> starts = map.at("starts").list(1, kStartsMax);
+  task.errors = distribution_of(starts.front());
+  for (const Value& start : starts) {
     task.starts.push_back(read_start(start, task, start_names));
   }
   if (const auto about = map.find("error_about_m")) {
     task.error_about_m = about->vector({-kSizeMax_m, kSizeMax_m});
   }
-  map.optional_number("particle_sigmas", positive_to(5.0), task.particle_sigmas);
+  read_reach(map, task);
 
   const auto primitives = map.find("primitives");
   if (primitives) {

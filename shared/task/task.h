@@ -39,6 +39,12 @@ struct BoxRegion {
   Pose pose;                         ///< of its centre
 };
 
+/// How the errors of a task's starts are distributed, each coordinate by itself.
+enum class Distribution : std::uint8_t {
+  kNormal,
+  kUniform,  ///< as likely anywhere within a bound, which is sqrt(3) standard deviations
+};
+
 /// A named nominal start.
 struct Start {
   std::string name;
@@ -55,7 +61,9 @@ struct Task {
   std::vector<Start> starts;
   /// What an error of the environment's rotation leaves where it is, task frame.
   Vector3 error_about_m = Vector3::Zero();
-  double particle_sigmas = 2.0;  ///< c_p: how many standard deviations out the particles sit
+  Distribution errors = Distribution::kNormal;  ///< of all starts
+  /// c_p: how many standard deviations out the particles sit; sqrt(3) where errors are uniform.
+  double particle_sigmas = 2.0;
 
   Pose goal;
   double goal_tolerance_m = 2e-3;     ///< d_tol

@@ -4,6 +4,7 @@
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
 #include "shared/drawing/view.h"
+#include "shared/task/spread.h"
 #include "sim/evaluation/figures.h"
 #include "sim/evaluation/summary.h"
 
@@ -95,8 +96,8 @@ class Report {
         "<table class='nowrap'><tr><th>Plan</th><th>Method</th><th class='num'>Steps</th>"
         "<th>Succeeded</th>";
     for (const RateWithin& within : summaries_.front().within) {
-      html += format("<th>Within %g&sigma; (%.2f %% of draws)</th>", within.distance,
-                     1e2 * within.mass);
+      html += "<th>W" + within_text(evaluation_.task, within.distance).substr(1) +
+              format(" (%.2f %% of draws)</th>", 1e2 * within.mass);
     }
     html += "<th class='num'>Stopped</th><th class='num'>Done but wrong</th></tr>\n";
     for (std::size_t i = 0; i < summaries_.size(); ++i) {

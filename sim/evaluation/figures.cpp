@@ -178,6 +178,23 @@ std::string map(const std::vector<Bins>& by, const std::vector<std::vector<Rate>
   return plot.svg();
 }
 
+/// The standard deviations that the plan holds for, or the bounds. @param sigma mm
+void mark_reach(Plot& plot, const Task& task, const Point& sigma) {
+  if (task.errors == Distribution::kUniform) {
+    const Point bound = task.particle_sigmas * sigma;
+    plot.rectangle(-bound, bound, "fill='none' stroke='#777' stroke-width='1.5'");
+    return;
+  }
+  for (const double sigmas : {2.0, 3.0}) {
+    plot.circle(Point::Zero(), sigmas * sigma,
+                sigmas == task.particle_sigmas
+                    ? "fill='none' stroke='#777' stroke-width='1.5'"
+                    : "fill='none' stroke='#999' stroke-dasharray='4 4'");
+    plot.text({0.0, sigmas * sigma.y()}, format("%g\u03c3", sigmas),
+              "text-anchor='middle' dy='-4' fill='#777'");
+  }
+}
+
 }  // namespace
 
 const char* colour_of(TrialClass trial_class) {
@@ -235,14 +252,7 @@ std::string figure_of_draws(const Evaluation& evaluation, const Candidate& candi
   extent.add(Point(3.3 * sigma.maxCoeff() * Point::Ones()));
   for (const auto& [number, run] : candidate.runs) extent.add(*at(run));
   Plot plot = plot_of(extent.widened(0.02), view, kNarrow_px);
-  for (const double sigmas : {2.0, 3.0}) {
-    plot.circle(Point::Zero(), sigmas * sigma,
-                sigmas == evaluation.task.particle_sigmas
-                    ? "fill='none' stroke='#777' stroke-width='1.5'"
-                    : "fill='none' stroke='#999' stroke-dasharray='4 4'");
-    plot.text({0.0, sigmas * sigma.y()}, format("%g\u03c3", sigmas),
-              "text-anchor='middle' dy='-4' fill='#777'");
-  }
+  mark_reach(plot, evaluation.task, sigma);
   mark(plot, candidate, 5.0, at);
   plot.dots({Point::Zero()}, 8.0, kGoalColour);
   return plot.svg();

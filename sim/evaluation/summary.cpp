@@ -7,6 +7,7 @@
 
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
+#include "shared/task/spread.h"
 
 namespace tenon::sim {
 namespace {
@@ -31,9 +32,8 @@ std::string describe(const Task& task, const Candidate& candidate) {
   text += "  succeeded " + text_of(s.success) +
           format("; stopped %zu, done but wrong %zu\n", s.stopped, s.done_but_wrong);
   for (const RateWithin& within : s.within) {
-    text +=
-        format("  within %g sigma (%.2f %% of all draws) ", within.distance, 1e2 * within.mass) +
-        text_of(within.rate) + "\n";
+    text += "  " + within_text(task, within.distance) +
+            format(" (%.2f %% of all draws) ", 1e2 * within.mass) + text_of(within.rate) + "\n";
   }
   for (const AxisError& error : s.errors) {
     const int axis = error.axis;
@@ -62,8 +62,12 @@ std::string ratio_text(const AxisError& error) {
 
 Summary summarise(const Task& task, const Candidate& candidate) {
   Summary summary;
-  for (const double distance : std::set<double>{2.0, 3.0, task.particle_sigmas}) {
-    summary.within.push_back({distance, mass_within(distance, dimensions(candidate.start)), {}});
+  if (task.errors == Distribution::kUniform) {
+    summary.within.push_back({task.particle_sigmas, 1.0, {}});
+  } else {
+    for (const double distance : std::set<double>{2.0, 3.0, task.particle_sigmas}) {
+      summary.within.push_back({distance, mass_within(distance, dimensions(candidate.start)), {}});
+    }
   }
   std::array<std::vector<double>, 6> initial;
   std::array<std::vector<double>, 6> final;

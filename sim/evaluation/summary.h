@@ -23,10 +23,10 @@ struct Rate {
   [[nodiscard]] Interval interval() const { return wilson_interval(successes, count); }
 };
 
-/// Success of the draws within a Mahalanobis distance.
+/// Success of the draws that are not farther out.
 struct RateWithin {
-  double distance = 0.0;
-  double mass = 0.0;  ///< the probability of such a draw
+  double distance = 0.0;  ///< see shared/task/spread.h
+  double mass = 0.0;      ///< the probability of such a draw
   Rate rate;
 };
 
@@ -55,7 +55,7 @@ struct Summary {
   Rate success;
   std::size_t stopped = 0;
   std::size_t done_but_wrong = 0;
-  std::vector<RateWithin> within;              ///< 2, 3 and the task's c_p, ascending
+  std::vector<RateWithin> within;              ///< 2, 3 and c_p, ascending; or the bounds
   std::map<std::string, std::size_t> endings;  ///< of all runs, by name
   std::vector<AxisError> errors;               ///< of the search coordinates
   Moments error_norm_m;                        ///< of the runs that were done

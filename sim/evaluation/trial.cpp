@@ -1,8 +1,7 @@
 #include "sim/evaluation/trial.h"
 
-#include <cmath>
-
 #include "shared/base/random.h"
+#include "shared/task/spread.h"
 #include "sim/cell/virtual_arm/environment_offset.h"
 
 namespace tenon::sim {
@@ -29,12 +28,8 @@ Trial draw_trial(const Task& task, const Start& start, const WorldRanges* ranges
   Trial trial;
   trial.number = number;
   trial.seed = stream_seed(seed, number) >> (64 - kSeedBits);
-  trial.offset = draw_offset(start, task.coordinates, trial.seed);
-  double squares = 0.0;
-  for (int axis = 0; axis < 6; ++axis) {
-    if (trial.offset[axis] != 0.0) squares += std::pow(trial.offset[axis] / start.sigma[axis], 2);
-  }
-  trial.distance = std::sqrt(squares);
+  trial.offset = draw_offset(task, start, trial.seed);
+  trial.distance = sigmas_out(task, start, trial.offset);
   if (ranges != nullptr) trial.world = draw_world(*ranges, task, trial.seed);
   return trial;
 }

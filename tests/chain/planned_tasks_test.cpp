@@ -86,7 +86,7 @@ Errors errors_of(const Validation& validation, const Task& task) {
   double sum_m = 0.0;
   double squares_m2 = 0.0;
   for (const Draw& draw : validation.draws) {
-    if (draw.mahalanobis > task.particle_sigmas) continue;
+    if (draw.sigmas_out > task.particle_sigmas) continue;
     const double off_m = (draw.chain.end().position_m - task.goal.position_m).norm();
     sum_m += off_m;
     squares_m2 += off_m * off_m;

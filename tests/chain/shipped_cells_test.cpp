@@ -33,7 +33,7 @@ TEST_P(ShippedCell, BringsTheBoxToItsGoalWhereverTheDemosSeedsPutTheTable) {
     WholeRun::Options run_options;
     run_options.start = start.name;
     run_options.seed = seed;
-    run_options.offset = sim::draw_offset(start, task.coordinates, seed);
+    run_options.offset = sim::draw_offset(task, start, seed);
     const auto result = WholeRun(cell, task, plan, run_options).run();
     std::printf("%s, seed %d: table off by x %.1f y %.1f mm, %s, %.2f mm from the goal, %.0f N\n",
                 GetParam(), static_cast<int>(seed), 1e3 * run_options.offset[0],

@@ -45,7 +45,7 @@ TEST_F(TurnedEnvironment, TheArmTakesThePlan) {
 
 TEST_F(TurnedEnvironment, TheBoxEndsAtItsPlaceAndAsTheTrayLies) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const Vector6 offset = sim::draw_offset(task.starts.front(), task.coordinates, seed);
+    const Vector6 offset = sim::draw_offset(task, task.starts.front(), seed);
     const WholeRun::Result result = run(offset);
     std::printf(
         "tray off by x %.1f y %.1f mm, rz %.2f deg: %s, %.2f mm and %.3f deg from the goal\n",

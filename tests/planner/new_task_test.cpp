@@ -119,11 +119,11 @@ TEST(NewTask, IsATaskWithFreeStartAndGoal) {
   sim::OdeRollout physics(task);
   EXPECT_FALSE(physics.in_collision(task.goal));
   const Start& start = task.starts.front();
-  for (const double x : {-1.0, 1.0}) {
-    for (const double z : {-1.0, 1.0}) {
+  for (const double x_m : {-2e-3, 2e-3}) {
+    for (const double z_m : {-2e-3, 2e-3}) {
       Vector6 off = Vector6::Zero();
-      off[0] = x * task.particle_sigmas * start.sigma[0];
-      off[2] = z * task.particle_sigmas * start.sigma[2];
+      off[0] = x_m;
+      off[2] = z_m;
       EXPECT_FALSE(physics.in_collision(displaced(start.pose, off)));
     }
   }
@@ -131,8 +131,8 @@ TEST(NewTask, IsATaskWithFreeStartAndGoal) {
   Vector6 aside = Vector6::Zero();
   aside[0] = 0.9e-3;
   EXPECT_TRUE(physics.in_collision(displaced(task.goal, aside)));
-  // Three standard deviations along each axis reach the corners of the cube.
-  EXPECT_NEAR(task.particle_sigmas * start.sigma[0], std::numbers::sqrt3 * 2e-3, 1e-8);
+  EXPECT_EQ(task.errors, Distribution::kUniform);
+  EXPECT_NEAR(task.particle_sigmas * start.sigma[0], 2e-3, 1e-12);
 }
 
 TEST(NewTask, TurnsWhereAskedTo) {

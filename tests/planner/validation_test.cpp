@@ -31,7 +31,7 @@ TEST(Validation, TheRimStandsWhereDrawingEndsAndCountsInNoStatistic) {
   // Four tips and four corners, each slippery and rough, on an arm at once and late.
   ASSERT_EQ(validation.rim.size(), 32U);
   for (const Draw& draw : validation.rim) {
-    EXPECT_EQ(draw.mahalanobis, sigmas);
+    EXPECT_EQ(draw.sigmas_out, sigmas);
     const Vector3 off_m = draw.chain.start.pose.position_m - start.pose.position_m;
     EXPECT_NEAR(off_m.norm(), sigmas * start.sigma[0], 1e-12);
     EXPECT_TRUE(draw.at_goal);
@@ -70,7 +70,7 @@ TEST(Validation, CornersStandOnTheRimOfTheReachWithEveryExtremeOfPhysics) {
   EXPECT_EQ(arrived(corners), 64U);
   std::set<std::array<double, 3>> physics;
   for (const Draw& draw : corners) {
-    EXPECT_EQ(draw.mahalanobis, task.particle_sigmas);
+    EXPECT_EQ(draw.sigmas_out, task.particle_sigmas);
     const PhysicalParameters& one = draw.chain.start.physics;
     physics.insert({one.friction, one.oversize_m, one.latency_s});
   }
@@ -106,7 +106,7 @@ TEST(Validation, WhatWouldStopADrawLeavesOutAllBehindItAtAnyNumberOfThreads) {
     RolloutPool pool(WallRollout(room()), threads);
     const auto starts =
         drawn_starts(5, 100, DrawnPhysics::kEven, plan, task, task.starts.front(), pool.front());
-    const auto far = [&](const Draw& draw) { return draw.mahalanobis > 1.9; };
+    const auto far = [&](const Draw& draw) { return draw.sigmas_out > 1.9; };
     const auto all = run_starts(plan, task, starts, pool);
     const auto until = run_starts(plan, task, starts, pool, far);
     ASSERT_EQ(all.size(), 100U);
@@ -134,12 +134,12 @@ TEST(Validation, TheFirstDrawWithinReachThatMissedSpeaksWithThePhysicsThatItHad)
   Task task = room_task();
   task.oversize_m = 1e-3;
   std::vector<Draw> draws(4);
-  draws[0].mahalanobis = 1.0;
+  draws[0].sigmas_out = 1.0;
   draws[0].at_goal = true;
   EXPECT_EQ(missed_draw({&draws[0], 1}, 2.0), nullptr);
-  draws[1].mahalanobis = 2.5;
+  draws[1].sigmas_out = 2.5;
   EXPECT_EQ(missed_draw({draws.data(), 2}, 2.0), nullptr) << "beyond the promise";
-  draws[2].mahalanobis = 1.5;
+  draws[2].sigmas_out = 1.5;
   draws[2].chain.start.physics = {0.6, 5e4, 1e-3, 0.007};
   EXPECT_EQ(missed_draw(draws, 2.0), &draws[2]);
   EXPECT_EQ(refutation_of(draws[2], task).why,

@@ -7,6 +7,7 @@
 
 #include "shared/config/load.h"
 #include "shared/task/inserted.h"
+#include "shared/task/spread.h"
 #include "tests/shared/slide_robot.h"
 #include "tests/support/places.h"
 #include "tests/support/refusal.h"
@@ -54,6 +55,39 @@ std::string refused(const ScratchFolder& folder, const char* what, const char* b
   const std::string file = folder.put("peg.yaml", replaced(kPegTask, what, by)).string();
   const std::string line = refusal([&] { (void)load_task(file + variant); });
   return line.starts_with(file) ? line.substr(file.size()) : line;
+}
+
+TEST(TaskErrors, UniformOnesReachToTheirBounds) {
+  const ScratchFolder folder;
+  const char* const normal = "pose: {position_m: [0, 0, 0.1]}, sigma_m: [0.01, 0.01]}";
+  const Task task = load_task(folder.put(
+      "uniform.yaml",
+      replaced(kPegTask, normal, "pose: {position_m: [0, 0, 0.1]}, uniform_m: [0.01, 0.02]}")));
+  EXPECT_EQ(task.errors, Distribution::kUniform);
+  const Start& start = task.starts[0];
+  EXPECT_NEAR(start.sigma[0], 0.01 / std::numbers::sqrt3, 1e-15);
+  EXPECT_NEAR(start.sigma[2], 0.02 / std::numbers::sqrt3, 1e-15);
+  EXPECT_NEAR(task.particle_sigmas * start.sigma[2], 0.02, 1e-15);
+  EXPECT_NEAR(sigmas_out(task, start, start.sigma), 1.0, 1e-12);
+  EXPECT_EQ(drawn_sigmas(task), task.particle_sigmas);
+
+  const Task other = load(folder, "");
+  EXPECT_NEAR(sigmas_out(other, other.starts[0], other.starts[0].sigma), std::numbers::sqrt2,
+              1e-12);
+  EXPECT_EQ(drawn_sigmas(other), other.particle_sigmas + 1.0);
+
+  EXPECT_EQ(
+      refused(folder, "sigma_m: [0.01, 0.01]}", "sigma_m: [0.01, 0.01], uniform_m: [0.01, 0.01]}",
+              ""),
+      ":9: starts[0].sigma_m: normal errors (sigma_m, sigma_rad) and uniform ones (uniform_m, "
+      "uniform_rad) do not mix in a task");
+  EXPECT_EQ(refused(folder, "sigma_m: [0.01, 0.01]}", "uniform_m: [0.01, 0]}", ""),
+            ":9: starts[0].uniform_m[1] = 0, must be in (0, 1]");
+  EXPECT_EQ(
+      refused(folder, "sigma_m: [0.01, 0.01]}\n", "uniform_m: [0.01, 0.01]}\nparticle_sigmas: 3\n",
+              ""),
+      ":10: particle_sigmas: counts standard deviations of normal errors (sigma_m, sigma_rad); "
+      "a plan for uniform ones holds to their bounds");
 }
 
 TEST(TaskVariant, ChangesWhatItNamesAndNothingElse) {

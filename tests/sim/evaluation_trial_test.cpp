@@ -33,7 +33,7 @@ TEST(EvaluationTrial, ARunsDrawIsThatOfTenonSimWithItsSeed) {
   for (std::size_t number = 0; number < 1000; ++number) {
     const Trial trial = draw_trial(task, start, &ranges, 7, number);
     EXPECT_LT(trial.seed, std::uint64_t{1} << 53);
-    EXPECT_EQ(trial.offset, draw_offset(start, task.coordinates, trial.seed));
+    EXPECT_EQ(trial.offset, draw_offset(task, start, trial.seed));
     EXPECT_EQ(trial.world.clearance_m, draw_world(ranges, task, trial.seed).clearance_m);
     seeds.insert(trial.seed);
   }

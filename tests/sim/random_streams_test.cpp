@@ -49,7 +49,7 @@ TEST(RandomStreamsTest, NoiseDriftAndTheEnvironmentsOffsetDoNotRepeatEachOther) 
   std::array<std::vector<double>, 2> noise;
   std::vector<double> drift;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const Vector6 drawn = draw_offset(task.starts[0], task.coordinates, seed);
+    const Vector6 drawn = draw_offset(task, task.starts[0], seed);
     const auto noisy_N = first_samples_N(seed, 10.0, 0.0);
     for (std::size_t i = 0; i < 2; ++i) {
       offset[i].push_back(drawn[static_cast<Eigen::Index>(i)]);

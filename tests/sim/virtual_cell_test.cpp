@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 
 #include "shared/base/error.h"
 #include "sim/cell/virtual_arm/environment_offset.h"
@@ -259,15 +262,30 @@ TEST(OffsetDrawTest, DrawsOnSearchCoordinatesAloneWithTheStartsSigma) {
   double squares = 0.0;
   constexpr int kDraws = 4000;
   for (int seed = 0; seed < kDraws; ++seed) {
-    const Vector6 offset =
-        draw_offset(task.starts[0], task.coordinates, static_cast<std::uint64_t>(seed));
+    const Vector6 offset = draw_offset(task, task.starts[0], static_cast<std::uint64_t>(seed));
     EXPECT_EQ(offset.tail<4>(), (Eigen::Vector4d::Zero()));
     sum += offset[0];
     squares += offset[0] * offset[0];
   }
   EXPECT_NEAR(sum / kDraws, 0.0, 5 * 0.03 / std::sqrt(kDraws));
   EXPECT_NEAR(std::sqrt(squares / kDraws), 0.03, 0.002);
-  EXPECT_EQ(draw_offset(task.starts[0], 0x03, 5), draw_offset(task.starts[0], 0x03, 5));
+  EXPECT_EQ(draw_offset(task, task.starts[0], 5), draw_offset(task, task.starts[0], 5));
+}
+
+TEST(OffsetDrawTest, UniformErrorsAreAsLikelyAnywhereWithinTheirBounds) {
+  Task task = wall_task();
+  task.errors = Distribution::kUniform;
+  const double bound_m = std::numbers::sqrt3 * task.starts[0].sigma[0];
+  constexpr int kDraws = 4000;
+  std::array<int, 4> quarters{};
+  for (int seed = 0; seed < kDraws; ++seed) {
+    const double z =
+        draw_offset(task, task.starts[0], static_cast<std::uint64_t>(seed))[0] / bound_m;
+    ASSERT_LE(std::abs(z), 1.0);
+    ++quarters.at(static_cast<std::size_t>(2.0 * (z + 1.0)));
+  }
+  // Five standard deviations of a count of one in four.
+  for (const int count : quarters) EXPECT_NEAR(count, kDraws / 4, 5 * 27.4);
 }
 
 TEST(ParseOffsetTest, TakesSearchCoordinatesAndNothingElse) {

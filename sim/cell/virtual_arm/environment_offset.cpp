@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 
 #include "shared/base/error.h"
@@ -17,13 +18,15 @@ namespace {
 
 }  // namespace
 
-Vector6 draw_offset(const Start& start, CoordinateMask coordinates, std::uint64_t seed) {
+Vector6 draw_offset(const Task& task, const Start& start, std::uint64_t seed) {
   Random source(stream_seed(seed, "environment_offset"));
   Vector6 offset = Vector6::Zero();
   for (int axis = 0; axis < 6; ++axis) {
     // Every axis takes a number, so that an axis more leaves the draws of the others alone.
-    const double value = source.normal();
-    if (has(coordinates, axis)) offset[axis] = start.sigma[axis] * value;
+    const double value = task.errors == Distribution::kUniform
+                             ? std::numbers::sqrt3 * (2.0 * source.uniform() - 1.0)
+                             : source.normal();
+    if (has(task.coordinates, axis)) offset[axis] = start.sigma[axis] * value;
   }
   return offset;
 }

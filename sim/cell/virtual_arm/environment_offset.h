@@ -9,10 +9,10 @@
 
 namespace tenon::sim {
 
-/// Displacement of the environment in task axes, m and rad: independent normal draws with the
-/// start's standard deviations, zero off the search coordinates. The same on every platform.
-[[nodiscard]] Vector6 draw_offset(const Start& start, CoordinateMask coordinates,
-                                  std::uint64_t seed);
+/// Displacement of the environment in task axes, m and rad: independent draws with the start's
+/// standard deviations, normal or uniform as the task says, zero off the search coordinates. The
+/// same on every platform.
+[[nodiscard]] Vector6 draw_offset(const Task& task, const Start& start, std::uint64_t seed);
 
 /// "x_m=0.02,y_m=-0.01": axes x_m y_m z_m rx_rad ry_rad rz_rad, each at most once.
 /// @throws InputError for anything else, and for axes that are no search coordinates of the task

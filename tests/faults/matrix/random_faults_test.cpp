@@ -98,7 +98,7 @@ void run_drawn(const Ground& ground, std::uint64_t number, Tally& tally) {
   strike.after_s = 0.3 * random.uniform();
   strike.seed = number;
   const Task& task = ground.planned.task;
-  strike.offset = sim::draw_offset(task.starts.front(), task.coordinates, number);
+  strike.offset = sim::draw_offset(task, task.starts.front(), number);
 
   DrivenRun run(ground, kind, strike);
   run.drive();
