@@ -64,7 +64,8 @@ std::vector<Vector6> rim_directions(const Task& task, const Start& start) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
       direction[axes[i]] = (corner >> i & 1U) != 0 ? 1.0 : -1.0;
     }
-    directions.push_back(task.errors == Distribution::kUniform ? direction : direction.normalized());
+    directions.push_back(task.errors == Distribution::kUniform ? direction
+                                                               : direction.normalized());
   }
   return directions;
 }

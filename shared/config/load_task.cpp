@@ -68,7 +68,8 @@ Map start_map(const Value& value) {
 /// The first start's keys decide for all.
 Distribution distribution_of(const Value& start) {
   const Map map = start_map(start);
-  return map.find("uniform_m") || map.find("uniform_rad") ? Distribution::kUniform : Distribution::kNormal;
+  return map.find("uniform_m") || map.find("uniform_rad") ? Distribution::kUniform
+                                                          : Distribution::kNormal;
 }
 
 void read_reach(const Map& map, Task& task) {

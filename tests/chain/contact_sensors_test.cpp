@@ -24,6 +24,7 @@ struct SensorCase {
   std::vector<SensorFault> faults;
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): googletest's name
 void PrintTo(const SensorCase& sensor, std::ostream* out) { *out << sensor.cell; }
 
 SensorFault silence(const char* fault, const char* after) {
