@@ -1,19 +1,14 @@
 #include "planner/search/attractors.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
 
-#include "planner/search/free_legs.h"
+#include "planner/search/contact_pushes.h"
 #include "planner/search/goal_attractors.h"
-#include "planner/search/guide_moves.h"
-#include "planner/search/push_places.h"
-#include "planner/search/touch_places.h"
 #include "shared/base/random.h"
 
 namespace tenon::planner {
@@ -23,51 +18,23 @@ namespace {
 constexpr std::size_t kMaxGuides = 2;
 // How far beyond w2 times the anchor a guide may begin: not at all.
 constexpr double kWithinAnchor = 0.98;
-// A sample that collides is drawn again, this often.
-constexpr int kAttempts = 20;
-// Every order of contacts is tried, so there are not to be too many.
-constexpr std::size_t kMaxContactsAnAxis = 8;
 constexpr std::uint64_t kSampleSeed = 1;
-
-/// Corners of a box, along the task's axes, around everything that can be touched.
-Eigen::AlignedBox3d around(const std::vector<Shape>& shapes) {
-  Eigen::AlignedBox3d box;
-  for (const Shape& shape : shapes) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vector3 sign((corner & 1) != 0 ? 0.5 : -0.5, (corner & 2) != 0 ? 0.5 : -0.5,
-                         (corner & 4) != 0 ? 0.5 : -0.5);
-      box.extend(shape.pose.position_m +
-                 shape.pose.orientation * shape.size_m.cwiseProduct(sign).eval());
-    }
-  }
-  return box;
-}
-
-/// All of a belief's particles are in contact against a push.
-bool on_face(const Belief& belief, const Primitive& push) {
-  return std::all_of(belief.particles.begin(), belief.particles.end(), [&](const Particle& p) {
-    return p.signature.sign(axis_of(push)) == -sign_of(push);
-  });
-}
 
 class GuideSearch {
  public:
-  GuideSearch(const Task& task, const Belief& start, SuccessorEngine& succ,
+  GuideSearch(const Task& task, const Belief& start, ContactPushes& pushes,
               const std::function<bool()>& stop)
-      : task_(task),
-        primitives_(long_primitives(task)),
-        start_(start),
-        seed_(summarise(start, task)),
-        succ_(succ),
-        stop_(stop) {}
+      : task_(task), start_(start), seed_(summarise(start, task)), pushes_(pushes), stop_(stop) {}
 
   /// Pushes along every axis that has not been pushed along yet, and on from there.
   void push_from(const Belief& belief, const std::vector<ContactAttractor>& before) {
     if (stopped()) return;
-    std::vector<Primitive> pushes = primitives_;
-    std::erase_if(pushes, [&](const Primitive& push) { return contains(before, axis_of(push)); });
+    CoordinateMask made = 0;
+    for (const ContactAttractor& contact : before) {
+      made |= static_cast<CoordinateMask>(1U << contact.axis);
+    }
     const double before_m2 = summarise(belief, task_).uncertainty_m2;
-    for (const Pushed& pushed : push_together(belief, pushes)) {
+    for (const ContactPushes::Pushed& pushed : pushes_.together(belief, made)) {
       if (pushed.contact.uncertainty_m2 >= before_m2) continue;
       std::vector<ContactAttractor> contacts = before;
       contacts.push_back(pushed.contact);
@@ -84,37 +51,24 @@ class GuideSearch {
     });
   }
 
-  /// The start's spread about another place; empty where the part would not fit there.
-  [[nodiscard]] Belief spread_about(const Pose& place, Rollout& rollout) const {
-    Belief belief;
-    for (Particle particle : start_.particles) {
-      const Pose tool = displaced(place, displacement_between(seed_.mean, particle.tool()));
-      if (rollout.in_collision(tool)) return {};
-      particle.pose = seen_as(particle.environment, tool);
-      belief.particles.push_back(particle);
-    }
-    return belief;
-  }
-
   /// Pushes from opposite every face that stands across an axis, and from drawn places, with the
   /// start's spread, then guides that go from one of the contacts to the next: for parts that a
   /// push from the start does not meet.
-  void look_around(Rollout& rollout) {
-    std::array<std::vector<ContactAttractor>, 6> known;
+  void look_around() {
+    KnownContacts known;
     for (const Guide& guide : found_) {
       const ContactAttractor& contact = guide.contacts.front();
       auto& of_axis = known[static_cast<std::size_t>(contact.axis)];
-      if (find_known(contact, of_axis) == of_axis.end()) of_axis.push_back(contact);
+      if (pushes_.find_known(contact, of_axis) == of_axis.end()) of_axis.push_back(contact);
     }
     if (task_.guide_moves) {
-      push_against_faces(rollout, known);
+      pushes_.against_faces(known);
       combine(known, seed_.uncertainty_m2, {});
       if (certain()) return;
     }
     Random random(kSampleSeed);
     for (std::size_t i = 0; i < task_.attractor_samples && !stopped(); ++i) {
-      const Belief belief = drawn(random, rollout);
-      if (!belief.particles.empty()) push_once(belief, primitives_, known, rollout);
+      pushes_.from_drawn(random, known);
     }
     combine(known, seed_.uncertainty_m2, {});
   }
@@ -131,23 +85,28 @@ class GuideSearch {
     return mask;
   }
 
-  /// Those that leave no more than the goal's uncertainty, or as little as any; the cheapest first.
+  /// Those to whose contacts straight legs lead, then those that leave no more than the goal's
+  /// uncertainty, or as little as any, then the cheapest. Who makes the contacts one after the
+  /// other, and again, may know more in the end than was left after each.
   void sort() {
-    const auto cost = [&](const Guide& guide) { return foliated_heuristic(seed_, guide, task_); };
-    const auto left_m2 = [](const Guide& guide) { return guide.contacts.back().uncertainty_m2; };
-    double enough_m2 = std::numeric_limits<double>::infinity();
-    for (const Guide& guide : found_) enough_m2 = std::min(enough_m2, left_m2(guide));
-    enough_m2 = std::max(enough_m2, task_.goal_uncertainty_m2);
-    std::erase_if(found_, [&](const Guide& guide) { return left_m2(guide) > enough_m2; });
-    std::stable_sort(found_.begin(), found_.end(), [&](const Guide& a, const Guide& b) {
-      return std::tuple(far(a), edges(a), cost(a)) < std::tuple(far(b), edges(b), cost(b));
-    });
-    if (found_.size() > kCandidatesMax) found_.resize(kCandidatesMax);
+    const double enough_m2 = least_left_m2();
+    const auto key = [&](const Guide& guide) {
+      return std::tuple(far(guide), left_m2(guide) > enough_m2, edges(guide),
+                        foliated_heuristic(seed_, guide, task_));
+    };
+    std::stable_sort(found_.begin(), found_.end(),
+                     [&](const Guide& a, const Guide& b) { return key(a) < key(b); });
   }
-  [[nodiscard]] const std::vector<Guide>& found() const { return found_; }
+  [[nodiscard]] std::vector<Guide> candidates() const {
+    std::vector<Guide> first = found_;
+    if (first.size() > kCandidatesMax) first.resize(kCandidatesMax);
+    return first;
+  }
 
-  /// The cheapest of the sorted guides, scaled.
+  /// The first of those that leave no more than that, scaled.
   [[nodiscard]] std::vector<Guide> take() {
+    const double enough_m2 = least_left_m2();
+    std::erase_if(found_, [&](const Guide& guide) { return left_m2(guide) > enough_m2; });
     if (found_.size() > kMaxGuides) found_.resize(kMaxGuides);
     const auto cost = [&](const Guide& guide) { return foliated_heuristic(seed_, guide, task_); };
     const double allowed = kWithinAnchor * task_.w2 * anchor_heuristic(seed_, task_);
@@ -161,31 +120,18 @@ class GuideSearch {
   }
 
  private:
-  struct Pushed {
-    ContactAttractor contact;  ///< with no via
-    Belief end;
-  };
+  [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
 
-  /// Those of the pushes after which the particles stand together along their axis.
-  [[nodiscard]] std::vector<Pushed> push_together(const Belief& belief,
-                                                  const std::vector<Primitive>& pushes) {
-    const BeliefSummary from = summarise(belief, task_);
-    const auto ends = succ_.successors(belief, pushes);
-    std::vector<Pushed> together;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (!ends[i]) continue;
-      const int axis = axis_of(pushes[i]);
-      const BeliefSummary end = summarise(*ends[i], task_);
-      if (end.spread[axis] >= task_.attractor_ratio * from.spread[axis]) continue;
-      if (out_of_reach(from.mean, end.mean)) continue;
-      together.push_back({{axis, sign_of(pushes[i]), end.mean, end.spread[axis], end.uncertainty_m2,
-                           on_face(*ends[i], pushes[i]), std::nullopt},
-                          *ends[i]});
-    }
-    return together;
+  [[nodiscard]] static double left_m2(const Guide& guide) {
+    return guide.contacts.back().uncertainty_m2;
   }
 
-  [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
+  /// The goal's uncertainty, or the least that any guide leaves.
+  [[nodiscard]] double least_left_m2() const {
+    double least_m2 = std::numeric_limits<double>::infinity();
+    for (const Guide& guide : found_) least_m2 = std::min(least_m2, left_m2(guide));
+    return std::max(least_m2, task_.goal_uncertainty_m2);
+  }
 
   /// How many of a guide's contacts are edges, which hold less well than faces. The lattice alone
   /// has no moves to choose by that.
@@ -201,130 +147,38 @@ class GuideSearch {
                          [](const ContactAttractor& contact) { return !contact.in_legs; });
   }
 
-  /// Along some axis, of a single move.
-  [[nodiscard]] bool out_of_reach(const Pose& from, const Pose& to) const {
-    if (!task_.guide_moves) return false;
-    const Vector6 way = displacement_between(from, to);
-    for (int axis = 0; axis < 6; ++axis) {
-      if (std::abs(way[axis]) > longest_move(task_, axis)) return true;
-    }
-    return false;
-  }
-
   [[nodiscard]] static bool contains(const std::vector<ContactAttractor>& contacts, int axis) {
     return std::any_of(contacts.begin(), contacts.end(),
                        [axis](const ContactAttractor& contact) { return contact.axis == axis; });
   }
 
-  /// Unless the same faces are known in the same order.
+  /// Unless the same faces are known in the same order, from where straight legs lead.
   void keep(const std::vector<ContactAttractor>& contacts) {
     const auto same_face = [this](const ContactAttractor& a, const ContactAttractor& b) {
       const double apart = std::abs(displacement_between(a.mean, b.mean)[a.axis]);
       return a.axis == b.axis && apart < 0.5 * (a.axis < 3 ? task_.step_m : task_.step_rad) &&
              a.via.has_value() == b.via.has_value();
     };
-    for (const Guide& other : found_) {
-      if (std::equal(contacts.begin(), contacts.end(), other.contacts.begin(), other.contacts.end(),
-                     same_face)) {
-        return;
+    const Guide guide{contacts, {task_.goal}, 1.0};
+    for (Guide& other : found_) {
+      if (!std::equal(contacts.begin(), contacts.end(), other.contacts.begin(),
+                      other.contacts.end(), same_face)) {
+        continue;
       }
+      if (far(guide) < far(other)) other = guide;
+      return;
     }
-    found_.push_back({contacts, {task_.goal}, 1.0});
-  }
-
-  /// The start's spread about a place near what can be touched; empty where no free one was drawn.
-  [[nodiscard]] Belief drawn(Random& random, Rollout& rollout) const {
-    Eigen::AlignedBox3d box = around(task_.environment);
-    const Vector3 reach = around(task_.held).sizes() + Vector3::Constant(task_.step_m);
-    box.min() -= reach;
-    box.max() += reach;
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      Pose place = seed_.mean;
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!has(task_.coordinates, axis)) continue;
-        place.position_m[axis] = box.min()[axis] + random.uniform() * box.sizes()[axis];
-      }
-      if (out_of_reach(seed_.mean, place)) continue;
-      Belief belief = spread_about(place, rollout);
-      if (!belief.particles.empty()) return belief;
-    }
-    return {};
-  }
-
-  /// Against each side of each shape, with the middle of the part.
-  void push_against_faces(Rollout& rollout, std::array<std::vector<ContactAttractor>, 6>& known) {
-    const Eigen::AlignedBox3d part = around(task_.held);
-    const Vector3 start_m = seed_.mean.position_m + part.center();
-    for (const Shape& shape : task_.environment) {
-      for (const Primitive& push : primitives_) {
-        if (stopped()) return;
-        const int axis = axis_of(push);
-        Vector3 size_m = part.sizes();
-        size_m[axis] = 0.0;
-        const double enough_m = 0.5 * size_m.norm() + seed_.spread.head<3>().maxCoeff();
-        for (const TouchPlace& side : touch_places(shape, axis, sign_of(push), enough_m, start_m)) {
-          const Belief belief = opposite(side, push, part, rollout);
-          if (!belief.particles.empty()) push_once(belief, {push}, known, rollout);
-        }
-      }
-    }
-  }
-
-  /// The start's spread before a place on a side, with the part's middle or one of its ends over
-  /// it: the nearest to which a way leads, else the middle. Empty where the part would not fit
-  /// there.
-  [[nodiscard]] Belief opposite(const TouchPlace& side, const Primitive& push,
-                                const Eigen::AlignedBox3d& part, Rollout& rollout) const {
-    FreeLegs legs(task_, seed_.mean, rollout);
-    const PartBefore before{part, seed_, axis_of(push), sign_of(push)};
-    for (const Pose& place : places_before(side, before, task_)) {
-      if (out_of_reach(seed_.mean, place) || !legs.to(seed_, place)) continue;
-      Belief belief = spread_about(place, rollout);
-      if (!belief.particles.empty()) return belief;
-    }
-    const Pose middle = middle_before(side, before, task_);
-    return out_of_reach(seed_.mean, middle) ? Belief{} : spread_about(middle, rollout);
-  }
-
-  /// Adds the contacts that each of these pushes makes.
-  void push_once(const Belief& belief, const std::vector<Primitive>& pushes,
-                 std::array<std::vector<ContactAttractor>, 6>& known, Rollout& rollout) {
-    const Pose via = summarise(belief, task_).mean;
-    const bool in_legs = FreeLegs(task_, seed_.mean, rollout).to(seed_, via).has_value();
-    for (Pushed& pushed : push_together(belief, pushes)) {
-      ContactAttractor& contact = pushed.contact;
-      contact.via = via;
-      contact.in_legs = in_legs;
-      auto& of_axis = known[static_cast<std::size_t>(contact.axis)];
-      const auto same = find_known(contact, of_axis);
-      if (same != of_axis.end()) {
-        const auto worth = [](const ContactAttractor& of) {
-          return std::pair(!of.in_legs, of.spread);
-        };
-        if (worth(contact) < worth(*same)) *same = contact;
-      } else if (of_axis.size() < kMaxContactsAnAxis) {
-        of_axis.push_back(contact);
-      }
-    }
-  }
-
-  /// The same face, met from where a step more or less makes no difference.
-  [[nodiscard]] std::vector<ContactAttractor>::iterator find_known(
-      const ContactAttractor& contact, std::vector<ContactAttractor>& others) const {
-    return std::find_if(others.begin(), others.end(), [&](const ContactAttractor& other) {
-      const Vector6 apart = displacement_between(contact.mean, other.mean);
-      return std::abs(apart[contact.axis]) < 0.1 * task_.step_m &&
-             (!other.via || apart.head<3>().norm() < task_.step_m);
-    });
+    found_.push_back(guide);
   }
 
   /// Every order of one contact for every axis that is uncertain.
-  void combine(const std::array<std::vector<ContactAttractor>, 6>& known, double uncertainty_m2,
+  void combine(const KnownContacts& known, double uncertainty_m2,
                const std::vector<ContactAttractor>& before) {
     bool last = true;
     for (int axis = 0; axis < 6; ++axis) {
       if (seed_.spread[axis] <= 0.0 || contains(before, axis)) continue;
       for (ContactAttractor contact : known[static_cast<std::size_t>(axis)]) {
+        if (!all_settled(contact.after, before)) continue;
         const double left_m2 = weight_of(axis) * contact.spread * contact.spread;
         contact.uncertainty_m2 = std::max(0.0, uncertainty_m2 - share_of(axis)) + left_m2;
         std::vector<ContactAttractor> contacts = before;
@@ -334,6 +188,14 @@ class GuideSearch {
       }
     }
     if (last && !before.empty()) keep(before);
+  }
+
+  [[nodiscard]] bool all_settled(CoordinateMask axes,
+                                 const std::vector<ContactAttractor>& by) const {
+    for (int axis = 0; axis < 6; ++axis) {
+      if (has(axes, axis) && seed_.spread[axis] > 0.0 && !contains(by, axis)) return false;
+    }
+    return true;
   }
 
   /// What an axis contributes to the start's uncertainty, m^2.
@@ -351,10 +213,9 @@ class GuideSearch {
   }
 
   const Task& task_;
-  std::vector<Primitive> primitives_;
   const Belief& start_;
   BeliefSummary seed_;
-  SuccessorEngine& succ_;
+  ContactPushes& pushes_;
   const std::function<bool()>& stop_;
   std::vector<Guide> found_;
 };
@@ -363,15 +224,16 @@ class GuideSearch {
 
 Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngine& succ,
                            Rollout& rollout, const std::function<bool()>& stop) {
-  GuideSearch search(task, start, succ, stop);
+  ContactPushes pushes(task, start, succ, rollout, stop);
+  GuideSearch search(task, start, pushes, stop);
   search.push_from(start, {});
-  const Belief about_goal = search.spread_about(task.goal, rollout);
+  const Belief about_goal = pushes.spread_about(task.goal);
   if (!about_goal.particles.empty()) search.push_from(about_goal, {});
-  if (!search.certain()) search.look_around(rollout);
+  if (!search.certain()) search.look_around();
 
   const CoordinateMask unsettled = search.unsettled();
   search.sort();
-  std::vector<Guide> candidates = search.found();
+  std::vector<Guide> candidates = search.candidates();
   Attractors found{search.take(), std::move(candidates), goal_attractors(task, start, succ),
                    unsettled};
   if (found.goals.size() > 1 && !found.guides.empty()) {

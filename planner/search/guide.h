@@ -20,7 +20,8 @@ struct ContactAttractor {
   /// Where a push must begin that would miss a small face from elsewhere; the coordinate along the
   /// axis does not count. Empty for a face that may be met anywhere.
   std::optional<Pose> via;
-  bool in_legs = true;  ///< some straight legs lead from the start to there
+  CoordinateMask after = 0;  ///< what contacts before it must have settled
+  bool in_legs = true;       ///< some straight legs lead from the start to there
 };
 
 /// Where an inadmissible heuristic leads: to contacts in turn, then past goal attractors, of which
