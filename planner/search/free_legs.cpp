@@ -33,9 +33,12 @@ std::optional<std::vector<Vector6>> FreeLegs::to(const BeliefSummary& belief, co
     if (!has(task_.coordinates, axis)) way[axis] = 0.0;
   }
   const std::vector<Legs> all = candidates(way, belief.mean);
+  const Pose end = displaced(belief.mean, way);
   for (const double margin_m : {kBeside_m, 0.0}) {
+    const Vector3 half_m = belief.spread.head<3>() + Vector3::Constant(margin_m);
+    if (!free_at(end, half_m)) continue;  // where all of them lead
     for (const Legs& legs : all) {
-      if (free(belief, legs, margin_m)) return legs;
+      if (free(belief, legs, half_m)) return legs;
     }
   }
   return std::nullopt;
@@ -72,8 +75,7 @@ std::vector<FreeLegs::Legs> FreeLegs::candidates(const Vector6& way, const Pose&
   return all;
 }
 
-bool FreeLegs::free(const BeliefSummary& belief, const Legs& legs, double margin_m) {
-  const Vector3 half_m = belief.spread.head<3>() + Vector3::Constant(margin_m);
+bool FreeLegs::free(const BeliefSummary& belief, const Legs& legs, const Vector3& half_m) {
   Pose at = belief.mean;
   for (const Vector6& leg : legs) {
     const double length_m = leg.head<3>().norm();

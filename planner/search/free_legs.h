@@ -28,7 +28,7 @@ class FreeLegs {
   using Legs = std::vector<Vector6>;
 
   [[nodiscard]] std::vector<Legs> candidates(const Vector6& way, const Pose& from) const;
-  [[nodiscard]] bool free(const BeliefSummary& belief, const Legs& legs, double margin_m);
+  [[nodiscard]] bool free(const BeliefSummary& belief, const Legs& legs, const Vector3& half_m);
   [[nodiscard]] bool free_at(const Pose& mean, const Vector3& half_m);
 
   const Task& task_;

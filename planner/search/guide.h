@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "shared/math/pose.h"
+#include "shared/plan/plan.h"
 
 namespace tenon::planner {
 
