@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "shared/base/text.h"
+#include "shared/config/load.h"
 #include "sim/cell/faults/fault_spec.h"
 #include "tests/support/faulty_options.h"
+#include "tests/support/places.h"
 
 namespace tenon::tests {
 namespace {
@@ -21,10 +24,16 @@ constexpr std::int64_t kPause_ns = 1'000'000'000;
 // A masked detector may leave a run without an end.
 constexpr std::int64_t kMost_ns = 30'000'000'000;
 
+/// A shipped one, or one that tests have a plan for.
+Cell cell_named(const std::string& name) {
+  const std::filesystem::path own = in_tree("tests/plans/" + name + "/cell.yaml");
+  return std::filesystem::exists(own) ? load_cell(own) : shipped_cell(name);
+}
+
 }  // namespace
 
 Ground::Ground(const std::string& cell_name, const std::string& twin, const std::string& plan_of)
-    : cell(shipped_cell(cell_name)),
+    : cell(cell_named(cell_name)),
       twins(twins_of(cell.robot, twin)),
       planned(planned_box(plan_of.empty() ? cell : shipped_cell(plan_of), "1")),
       dry_run(executor::dry_run(planned.plan, cell)) {

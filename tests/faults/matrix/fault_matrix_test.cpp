@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -97,6 +98,23 @@ class FaultMatrix : public ::testing::TestWithParam<Subject> {
   }
   [[nodiscard]] static const char* robot() { return GetParam().cell; }
 
+  /// Every phase of these kinds, printed, a line each.
+  Count walked(const std::vector<FaultKind>& of) {
+    Count count;
+    std::printf("%s, cycles from when a fault can be seen to its name\n", robot());
+    for (const FaultKind& kind : of) {
+      std::string line;
+      for (const FaultPhase phase : kPhases) {
+        const Outcome& outcome = outcome_in(kind, phase);
+        count.add(outcome);
+        line += " | " + outcome.text;
+      }
+      std::printf("%s%s\n", kind.name, line.c_str());
+    }
+    count.print(robot());
+    return count;
+  }
+
   /// Without its detector a cell that has a name loses it. @return it has one
   bool loses_its_name(const FaultKind& kind, FaultPhase phase) {
     const Outcome& outcome = outcome_of(ground, robot(), kind, phase);
@@ -126,18 +144,7 @@ class FaultMatrix : public ::testing::TestWithParam<Subject> {
 };
 
 TEST_P(FaultMatrix, EveryFaultInEveryPhaseIsRiddenOutOrStoppedByName) {
-  Count count;
-  std::printf("%s, cycles from when a fault can be seen to its name\n", robot());
-  for (const FaultKind& kind : kinds) {
-    std::string line;
-    for (const FaultPhase phase : kPhases) {
-      const Outcome& outcome = outcome_in(kind, phase);
-      count.add(outcome);
-      line += " | " + outcome.text;
-    }
-    std::printf("%s%s\n", kind.name, line.c_str());
-  }
-  count.print(robot());
+  const Count count = walked(kinds);
   EXPECT_LE(count.of(Outcome::Verdict::kImpossible), kImpossibleMost);
   EXPECT_EQ(count.powered > 0, has_drives_without_reaction(ground.cell.robot));
 }
@@ -191,6 +198,18 @@ TEST_P(FaultSample, FaultsInSomePhaseAreRiddenOutOrStoppedByName) {
   EXPECT_GE(count.of(Outcome::Verdict::kStopped), 7);
 }
 
+// All that can happen to a sensor's samples, in every phase, with each of the sensors that are
+// named by a profile; the shipped robots have CANopen nodes.
+class SensorFaults : public FaultMatrix {};
+
+TEST_P(SensorFaults, EachInEveryPhaseIsRiddenOutOrStoppedByName) {
+  std::erase_if(kinds, [](const FaultKind& kind) {
+    return !std::string_view(kind.name).starts_with("force ");
+  });
+  const Count count = walked(kinds);
+  EXPECT_GE(count.of(Outcome::Verdict::kStopped), 20);
+}
+
 std::string subject_name(const ::testing::TestParamInfo<Subject>& info) { return info.param.cell; }
 
 constexpr Subject kOtherArms[] = {
@@ -204,6 +223,10 @@ INSTANTIATE_TEST_SUITE_P(SixAxes, FaultMatrix, ::testing::Values(Subject{.cell =
                          subject_name);
 INSTANTIATE_TEST_SUITE_P(Full, FaultMatrix, ::testing::ValuesIn(kOtherArms), subject_name);
 INSTANTIATE_TEST_SUITE_P(Tree, FaultSample, ::testing::ValuesIn(kOtherArms), subject_name);
+INSTANTIATE_TEST_SUITE_P(Tree, SensorFaults,
+                         ::testing::Values(Subject{.cell = "rft_gantry3"},
+                                           Subject{.cell = "ati_gantry3"}),
+                         subject_name);
 
 }  // namespace
 }  // namespace tenon::tests
