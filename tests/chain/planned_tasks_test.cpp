@@ -30,7 +30,8 @@
 namespace tenon::planner {
 namespace {
 
-constexpr std::size_t kDraws = 20;  // the executable takes 200 and more
+constexpr std::size_t kDraws = 20;      // where other things are looked at
+constexpr std::size_t kAllDraws = 200;  // as tenon-plan: with few a path that misses is not refuted
 
 struct Setting {
   std::string file;  // "box_on_table_2d.yaml", "box_on_table_2d.yaml#paper", ...
@@ -69,10 +70,10 @@ std::string test_name(const testing::TestParamInfo<Setting>& info) {
   return name;
 }
 
-PlanReport planned(const Task& task, const Start& start, std::size_t threads) {
+PlanReport planned(const Task& task, const Start& start, std::size_t threads, std::size_t draws) {
   PlannerOptions options;
   options.threads = threads;
-  options.draws = kDraws;
+  options.draws = draws;
   return make_plan(task, start, sim::OdeRollout(task), options, [] { return 0.0; });
 }
 
@@ -97,7 +98,7 @@ Errors errors_of(const Validation& validation, const Task& task) {
 }
 
 // What holds for every plan of a task that ships. @param draws a validation that the search has not
-// seen; it saw only 20 draws itself
+// seen
 void expect_good(const Task& task, const std::vector<std::uint8_t>& bytes,
                  const Certification& certification, const Validation& draws) {
   const Errors errors = errors_of(draws, task);
@@ -107,7 +108,8 @@ void expect_good(const Task& task, const std::vector<std::uint8_t>& bytes,
       1e3 * errors.deviation_m, draws.at_goal_within(task.particle_sigmas),
       draws.within(task.particle_sigmas));
   EXPECT_LE(bytes.size(), 2048U);
-  EXPECT_GE(5 * draws.at_goal_within(task.particle_sigmas), 4 * draws.within(task.particle_sigmas));
+  EXPECT_GE(20 * draws.at_goal_within(task.particle_sigmas),
+            19 * draws.within(task.particle_sigmas));
   // Two steps and two frictions, the part as drawn, two latencies.
   EXPECT_EQ(certification.runs.size(),
             4U + (task.oversize_m > 0.0 ? 1U : 0U) + (task.guide_moves ? 2U : 0U));
@@ -132,7 +134,7 @@ TEST_P(PlannedTask, EndsEveryParticleOfEveryVariantInsertedAtTheGoal) {
   const Task task = task_of(GetParam().file);
   const Start* start = find_start(task, GetParam().start);
   ASSERT_NE(start, nullptr);
-  const PlanReport report = planned(task, *start, 2);
+  const PlanReport report = planned(task, *start, 2, kAllDraws);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
   std::printf("%zu expansions, ", report.expansions);
   expect_good(task, report.bytes, report.certification, report.validation);
@@ -144,10 +146,10 @@ class PlannedTaskInThePlane : public testing::TestWithParam<const char*> {};
 
 TEST_P(PlannedTaskInThePlane, IsTheSamePlanByteForByteOnOneTwoAndFourThreads) {
   const Task task = task_of(GetParam());
-  const PlanReport one = planned(task, task.starts.front(), 1);
+  const PlanReport one = planned(task, task.starts.front(), 1, kDraws);
   ASSERT_EQ(one.status, PlanStatus::kPlanned) << one.reason;
   for (const std::size_t threads : {2U, 4U}) {
-    EXPECT_EQ(planned(task, task.starts.front(), threads).bytes, one.bytes) << threads;
+    EXPECT_EQ(planned(task, task.starts.front(), threads, kDraws).bytes, one.bytes) << threads;
   }
 }
 
