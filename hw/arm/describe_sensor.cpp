@@ -137,7 +137,7 @@ std::optional<std::string> describe_sensor(const ArmFault& fault, const ForceTor
   if (fault.kind == ArmFaultKind::kConfiguration) {
     return name + (ati ? ati_configuration(fault) : rft_refusal(fault, sensor));
   }
-  const bool its_word = fault.object >> 8 == canopen::kSensorStatus;
+  const bool its_word = fault.object >> 8 == tenon::canopen::kSensorStatus;
   if (fault.kind == ArmFaultKind::kSensorInvalid && its_word) {
     return name + (ati ? ati_status(fault.code) : rft_overload(fault.code));
   }
