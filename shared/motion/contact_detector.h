@@ -31,6 +31,12 @@ class ContactDetector {
   /// Bits that are not set and whose last fresh sample was above the on-threshold, or not much
   /// below it since then.
   [[nodiscard]] ContactSignature candidates() const { return candidates_; }
+  /// Of the candidates those that the last fresh sample had no more above the on-threshold.
+  [[nodiscard]] ContactSignature fading() const {
+    return {static_cast<std::uint16_t>(candidates_.bits & ~pending_.bits)};
+  }
+  /// They have to come above it again.
+  void drop_fading() { candidates_.bits &= pending_.bits; }
   /// Bits that were kept, and would have been lost by the last fresh sample.
   [[nodiscard]] ContactSignature weak() const { return weak_; }
   /// Loses them.

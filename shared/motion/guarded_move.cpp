@@ -220,6 +220,9 @@ void GuardedMove::probe(const Input& input) {
     return enter_settling(input, Outcome::kTimeout);
   }
   free_tool_.update(setpoint_, Vector6::Zero(), step_s());
+  // What presses has come to rest on less than a contact takes, friction for one: no more comes.
+  const bool faded = watched(detector_.fading()) == watched(detector_.candidates());
+  if (faded && slower_than(kRestSpeed_mps, kRestSpeed_radps)) detector_.drop_fading();
   if (input.wrench_fresh && watched(detector_.candidates()).bits == 0) resume(input);
 }
 

@@ -162,6 +162,28 @@ TEST(GuardedMove, GoesOnAfterAPushThatDoesNotLast) {
   EXPECT_NEAR(guarded.result()->travelled[0], 0.1, 0.1e-3);
 }
 
+// A tool jammed by friction: for a moment more than the on-threshold, then a little less for good.
+TEST(GuardedMove, DoesNotWaitForAContactThatRestsBelowItsThreshold) {
+  MoveParameters move = along(0.1, 0.0);
+  move.timeout_us = 5'000'000;
+  GuardedMove guarded(move, {});
+  FormulaWorld world;
+  const double on_N = move.thresholds.force_on_N;
+  for (std::int64_t t_ns = 0; !guarded.result(); t_ns += kStep_ns) {
+    GuardedMove::Input input = world.input(t_ns);
+    const bool struck = input.pose.position_m.x() >= 0.02;
+    if (struck) input.wrench[0] = -0.95 * on_N;
+    if (struck && world.wall_plus_x_m > 1.0) {
+      input.wrench[0] = -1.05 * on_N;
+      world.wall_plus_x_m = 0.02;
+      world.wall_stiffness_Npm = 1e9;
+    }
+    const auto setpoint = guarded.update(input).setpoint;
+    if (!struck) world.follow(setpoint, move.compliance);
+  }
+  EXPECT_EQ(guarded.result()->outcome, Outcome::kBlocked);
+}
+
 TEST(GuardedMove, StaleSamplesDoNotFillTheDebounce) {
   // time     0   2   4   6   8  ms
   // force   -15 (the same sample again: not fresh)
