@@ -6,7 +6,7 @@ namespace tenon::executor {
 namespace {
 
 constexpr int kTransitionCycles = 3;
-constexpr double kGravity_mps2 = 9.80665;
+constexpr double kFall_mps2 = 9.80665;
 
 JointVector gantry_joints(const Cell& cell, const Pose& tool) {
   SerialChain::InverseParameters parameters;
@@ -52,7 +52,7 @@ Vector6 WallArm::sensor_reading() {
   const Pose X_SP = compose(inverse(cell_.X_FS), cell_.X_FP);
   const Vector3 force_N = R_ST * Vector3(wall_force_N() + push.head<3>());
   const Vector3 torque_Nm = R_ST * Vector3(push.tail<3>());
-  const Vector3 weight_N = R_BS.conjugate() * Vector3(0, 0, -kGravity_mps2 * cell_.payload_mass_kg);
+  const Vector3 weight_N = R_BS.conjugate() * Vector3(0, 0, -kFall_mps2 * cell_.payload_mass_kg);
   Vector6 reading;
   reading << force_N + weight_N,
       torque_Nm + X_SP.position_m.cross(force_N) + cell_.payload_com_m.cross(weight_N);
