@@ -91,10 +91,10 @@ stage_lint() {
   local failed=0
   python3 -B tests/house/rules.py || failed=1
 
-  configure dev
-  cmake --build --preset dev --target lcmtypes_headers >/dev/null
+  configure lint
+  cmake --build --preset lint --target lcmtypes_headers >/dev/null
   local roots=()
-  for folder in build/dev/roots/*; do
+  for folder in build/lint/roots/*; do
     roots+=(-I "$folder")
   done
   # Only Tenon's own headers: cppcheck is not meant to read Eigen's.
@@ -110,7 +110,7 @@ stage_lint() {
 
   local which=()
   [[ $tier == full ]] && which=(--all)
-  .ci/tidy.py build/dev -j "$jobs" "${which[@]}" || failed=1
+  .ci/tidy.py build/lint -j "$jobs" "${which[@]}" || failed=1
   return "$failed"
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs clang-tidy over Tenon's own sources: over those that have changed, or over all.
 
-  .ci/tidy.py build/dev [-j N] [--all] [PATH...]    PATH: folders or files below the repository
+  .ci/tidy.py build/lint [-j N] [--all] [PATH...]    PATH: folders or files below the repository
 
 Changed means: neither this text (but for its include lines, so that moving a file changes nothing) stood
 anywhere in the commit that .ci/linted names, nor has this file passed before on this machine. For a changed

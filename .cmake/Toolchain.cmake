@@ -30,14 +30,18 @@ if(TENON_SANITIZERS)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND TENON_SANITIZERS MATCHES "undefined")
     add_compile_options(-fno-sanitize=null,alignment)
   endif()
-  # Several files compiled as one take a quarter of the time. The builds without sanitizers compile each by
-  # itself, for the linters' sake and ccache's.
-  set(CMAKE_UNITY_BUILD ON)
-  # A local name may then be one that another of the files has at namespace scope.
-  add_compile_options(-Wno-shadow)
   # Instrumented code makes GCC take an empty std::optional for an uninitialised value; the builds
   # without sanitizers keep this warning.
   add_compile_options(-Wno-maybe-uninitialized)
+endif()
+
+# Several files of a target compiled as one take a quarter of the time, and a header that all read is read less
+# often. Linters and editors want a command for each file: the preset lint says them and builds nothing.
+option(TENON_UNITY "Compile several files of a target as one" ON)
+set(CMAKE_UNITY_BUILD ${TENON_UNITY})
+if(TENON_UNITY)
+  # A local name may then be one that another of the files has at namespace scope.
+  add_compile_options(-Wno-shadow)
 endif()
 
 # ccache, where there is one: .ci/setup.sh installs it before the first configure. Paths below the

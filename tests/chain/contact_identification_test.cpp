@@ -50,7 +50,7 @@ void run_motion(executor::IdentificationMotion& motion, const Cell& arm_cell, co
 }
 
 // A small cube on air, a wall 4 mm in front of its +x face.
-Task wall_task() {
+Task wall_before_x() {
   Task task;
   task.name = "wall";
   task.coordinates = 0x01;
@@ -74,7 +74,7 @@ void identify(Drawn& drawn, std::uint64_t seed) {
   cell.contact_stiffness_Npm = drawn.stiffness_Npm;
   cell.robot.response_lag_s = drawn.lag_s;
   for (Joint& joint : cell.robot.joints) joint.following_error_max = 0.02;
-  run_motion(motion, cell, wall_task(), seed);
+  run_motion(motion, cell, wall_before_x(), seed);
   EXPECT_TRUE(motion.met());
   drawn.found = executor::identify_contact(motion.samples(), 1e-6 * cell.robot.cycle_us);
 }
@@ -117,7 +117,7 @@ TEST(ManyContactIdentifications, FindTheStiffnessAndTheLagThatTheVirtualArmWasMa
 }
 
 TEST(ContactIdentification, WhereNothingStandsItGoesBackAndSaysSo) {
-  Task task = wall_task();
+  Task task = wall_before_x();
   task.environment.front().pose.position_m.x() += 0.2;
   executor::IdentifyContactMotion motion(gantry_cell(), {});
   run_motion(motion, gantry_cell(), task, 1, EndReason::kNothingMet);
@@ -129,7 +129,7 @@ TEST(ContactIdentification, WhereNothingStandsItGoesBackAndSaysSo) {
 
 TEST(PayloadIdentification, AGantrySeesTheWeightAloneAndSaysSo) {
   executor::IdentifyPayloadMotion motion(gantry_cell(), {});
-  run_motion(motion, gantry_cell(), wall_task(), 1);
+  run_motion(motion, gantry_cell(), wall_before_x(), 1);
   const auto found = executor::identify_payload(motion.readings());
   EXPECT_EQ(found.status, executor::PayloadIdentification::Status::kNotTurned);
   EXPECT_NEAR(found.apparent_mass_kg, gantry_cell().payload_mass_kg, 0.01);

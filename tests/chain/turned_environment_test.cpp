@@ -18,7 +18,7 @@
 namespace tenon::tests {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 class TurnedEnvironment : public ::testing::Test {
  protected:
@@ -49,11 +49,11 @@ TEST_F(TurnedEnvironment, TheBoxEndsAtItsPlaceAndAsTheTrayLies) {
     const WholeRun::Result result = run(offset);
     std::printf(
         "tray off by x %.1f y %.1f mm, rz %.2f deg: %s, %.2f mm and %.3f deg from the goal\n",
-        1e3 * offset[0], 1e3 * offset[1], offset[5] / kDegree, result.reason.c_str(),
-        1e3 * result.truth.error_norm_m, result.truth.error_norm_rad / kDegree);
+        1e3 * offset[0], 1e3 * offset[1], offset[5] / kDegree_rad, result.reason.c_str(),
+        1e3 * result.truth.error_norm_m, result.truth.error_norm_rad / kDegree_rad);
     EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanDone) << result.reason;
     EXPECT_TRUE(result.truth.within_tolerance);
-    EXPECT_LT(result.truth.error_norm_rad, 0.2 * kDegree);
+    EXPECT_LT(result.truth.error_norm_rad, 0.2 * kDegree_rad);
   }
 }
 
@@ -64,7 +64,7 @@ TEST_F(TurnedEnvironment, AtTheRimOfItsReachToo) {
     offset << 0.02, -0.02, 0.0, 0.0, 0.0, turned_rad;
     const WholeRun::Result result = run(offset);
     EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanDone) << result.reason;
-    EXPECT_LT(result.truth.error_norm_rad, 0.2 * kDegree);
+    EXPECT_LT(result.truth.error_norm_rad, 0.2 * kDegree_rad);
   }
 }
 

@@ -97,7 +97,7 @@ struct Logged {
   std::vector<tenon::run_summary_t> summaries;
 };
 
-Logged read_log(const std::string& file) {
+Logged summaries_of(const std::string& file) {
   lcm::LogFile source(file, "r");
   EXPECT_TRUE(source.good());
   Logged logged;
@@ -121,7 +121,7 @@ TEST(ExecProcess, IdentifyPayloadLeavesResultLogAndFramesAsAPlansRunDoes) {
   EXPECT_EQ(result.at("arm").at("malformed_frames"), 0);
   EXPECT_NE(result.at("message").get<std::string>().find("does not turn its sensor"),
             std::string::npos);
-  const Logged log = read_log(run->file("log"));
+  const Logged log = summaries_of(run->file("log"));
   EXPECT_EQ(log.cycles + result.at("cycle").at("records_dropped").get<std::size_t>(),
             result.at("cycle").at("cycles").get<std::size_t>());
   ASSERT_EQ(log.summaries.size(), 1U);

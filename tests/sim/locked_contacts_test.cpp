@@ -16,7 +16,7 @@
 namespace tenon::sim {
 namespace {
 
-constexpr double kStep_s = 0.002;
+constexpr double kFlight_s = 0.002;
 
 double between(Random& random, double low, double high) {
   return low + random.uniform() * (high - low);
@@ -70,16 +70,16 @@ End by_ode(const Case& one) {
   CompliantTool tool(world, one.compliance);
   tool.set_compliance(one.compliance, /*turns=*/false, one.arm);
   tool.place({});
-  tool.fly(one.before, kStep_s);
+  tool.fly(one.before, kFlight_s);
   tool.show();
   dGeomID on_body = dCreateSphere(nullptr, 0.01);
   dGeomSetBody(on_body, tool.body());
   std::vector<dContactGeom> points = one.points;
   for (dContactGeom& point : points) point.g1 = on_body;
   ContactJoints joints;
-  joints.make(world, points, one.law, kStep_s);
-  tool.drive(one.now, kStep_s);
-  world.step(kStep_s);
+  joints.make(world, points, one.law, kFlight_s);
+  tool.drive(one.now, kFlight_s);
+  world.step(kFlight_s);
   tool.follow();
   dGeomDestroy(on_body);
   return {tool.pose(), tool.part_pose(), joints.wrench(), true};
@@ -90,12 +90,13 @@ End by_sweeps(const Case& one) {
   CompliantTool tool(world, one.compliance);
   tool.set_compliance(one.compliance, /*turns=*/false, one.arm);
   tool.place({});
-  tool.fly(one.before, kStep_s);
+  tool.fly(one.before, kFlight_s);
   LockedContacts contacts;
-  const bool settled = contacts.solve(one.points, one.law, tool.free_velocity_mps(one.now, kStep_s),
-                                      tool.give_mpspN(kStep_s), kStep_s);
+  const bool settled =
+      contacts.solve(one.points, one.law, tool.free_velocity_mps(one.now, kFlight_s),
+                     tool.give_mpspN(kFlight_s), kFlight_s);
   const Vector6 wrench = contacts.wrench_about(tool.part_pose().position_m);
-  tool.fly(one.now, kStep_s, wrench);
+  tool.fly(one.now, kFlight_s, wrench);
   return {tool.pose(), tool.part_pose(), wrench, settled};
 }
 

@@ -20,7 +20,7 @@ constexpr Bytes kEnableFrame = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC};
 constexpr Bytes kDisableFrame = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD};
 constexpr Bytes kClearFrame = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFB};
 constexpr Bytes kCommandOfOnes = {0x8A, 0x3D, 0x84, 0x40, 0x52, 0x33, 0x38, 0xCC};
-constexpr std::int64_t kMillisecond_ns = 1'000'000;
+constexpr std::int64_t kMs_ns = 1'000'000;
 
 class MitDriveTest : public ::testing::Test {
  protected:
@@ -51,7 +51,7 @@ class MitDriveTest : public ::testing::Test {
     return answers.empty() ? CanFrame{} : answers.front();
   }
   void pass(std::int64_t milliseconds) {
-    now_ns += milliseconds * kMillisecond_ns;
+    now_ns += milliseconds * kMs_ns;
     drive.advance(now_ns);
   }
   void enable_in_mit_mode() {
@@ -64,7 +64,7 @@ class MitDriveTest : public ::testing::Test {
 };
 
 TEST_F(MitDriveTest, AnswersEveryFrameWithWhatTheAxisDoes) {
-  drive.measured({(1.0 + 12.5) * kCountsPerRad, 1.0 * kCountsPerRad, 250.0}, kMillisecond_ns);
+  drive.measured({(1.0 + 12.5) * kCountsPerRad, 1.0 * kCountsPerRad, 250.0}, kMs_ns);
   // Off; 1 rad, 1 rad/s, 1 Nm of 4 rated; 25 degC twice.
   const CanFrame off = ask(0x001, kDisableFrame);
   EXPECT_EQ(off.id, 0x011U);
@@ -76,7 +76,7 @@ TEST_F(MitDriveTest, AnswersEveryFrameWithWhatTheAxisDoes) {
 TEST_F(MitDriveTest, ObeysStiffnessDampingAndTorqueOfTheCommand) {
   enable_in_mit_mode();
   EXPECT_EQ(ask(0x001, kCommandOfOnes).data[0], 0x11);
-  const VirtualDrive::Demand demand = drive.demand(kMillisecond_ns);
+  const VirtualDrive::Demand demand = drive.demand(kMs_ns);
   EXPECT_TRUE(demand.powered);
   EXPECT_FALSE(demand.brake);
   EXPECT_NEAR(demand.position_counts / kCountsPerRad - 12.5, 1.0, 2e-4);
@@ -94,14 +94,14 @@ TEST_F(MitDriveTest, CommandsOfAnotherModeAreAnsweredAndNotObeyed) {
 }
 
 TEST_F(MitDriveTest, StandHoldsItUntilItObeysAndNothingOnceItIsOff) {
-  EXPECT_TRUE(drive.demand(kMillisecond_ns).brake);
+  EXPECT_TRUE(drive.demand(kMs_ns).brake);
   enable_in_mit_mode();
-  EXPECT_TRUE(drive.demand(kMillisecond_ns).brake);
+  EXPECT_TRUE(drive.demand(kMs_ns).brake);
   ask(0x001, kCommandOfOnes);
-  EXPECT_FALSE(drive.demand(kMillisecond_ns).brake);
+  EXPECT_FALSE(drive.demand(kMs_ns).brake);
   ask(0x001, kDisableFrame);
   // Friction of 0.5 Nm is all that is left, of 4 rated.
-  const VirtualDrive::Demand off = drive.demand(kMillisecond_ns);
+  const VirtualDrive::Demand off = drive.demand(kMs_ns);
   EXPECT_FALSE(off.brake);
   EXPECT_EQ(off.impedance->stiffness, 0.0);
   EXPECT_EQ(off.impedance->effort, 0.0);
@@ -130,7 +130,7 @@ TEST_F(MitDriveTest, WithoutCommandsItLosesItsMasterAndGoesOffUntilThatIsCleared
   EXPECT_TRUE(drive.look().enabled);
   pass(1);
   EXPECT_TRUE(drive.look().faulted);
-  EXPECT_EQ(drive.demand(kMillisecond_ns).impedance->stiffness, 0.0);
+  EXPECT_EQ(drive.demand(kMs_ns).impedance->stiffness, 0.0);
   EXPECT_EQ(ask(0x001, kCommandOfOnes).data[0], 0xD1);
   EXPECT_EQ(ask(0x001, kEnableFrame).data[0], 0xD1);
   EXPECT_EQ(ask(0x001, kClearFrame).data[0], 0x01);

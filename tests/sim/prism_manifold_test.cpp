@@ -29,13 +29,13 @@ double outside_m(const Shape& shape, const Vector3& place_m) {
   return std::max(p.head<2>().norm() - half_m.x(), std::abs(p.z()) - half_m.z());
 }
 
-struct Pair {
+struct HeldAndFixed {
   Shape held{"held", Shape::Kind::kBox, {0.1, 0.06, 0.2}, {}};
   Shape fixed{"fixed", Shape::Kind::kBox, {0.3, 0.2, 0.1}, {}};
 };
 
 /// Somewhere about each other's sides or ends, a little deep or off, all of it turned.
-void place(Random& random, Pair& pair) {
+void place(Random& random, HeldAndFixed& pair) {
   const auto within = [&](double low, double high) {
     return low + random.uniform() * (high - low);
   };
@@ -54,7 +54,7 @@ void place(Random& random, Pair& pair) {
   pair.fixed.pose = all;
 }
 
-void expect_sound(Pair pair, std::uint64_t seed) {
+void expect_sound(HeldAndFixed pair, std::uint64_t seed) {
   const OdeWorld initialised;
   Random random(seed);
   int touching = 0;
@@ -88,7 +88,7 @@ void expect_sound(Pair pair, std::uint64_t seed) {
 TEST(PrismManifold, BoxesThatTurnAgainstEachOther) { expect_sound({}, 1); }
 
 TEST(PrismManifold, ACylinderAndABox) {
-  Pair pair;
+  HeldAndFixed pair;
   pair.held = {"held", Shape::Kind::kCylinder, {0.06, 0.06, 0.1}, {}};
   expect_sound(pair, 2);
 }
