@@ -88,7 +88,8 @@ std::string configuration(const ArmFault& fault, const Robot& robot) {
   const unsigned index = fault.object >> 8;
   const auto setting = setting_of(fault, robot);
   if (setting && setting->action == ObjectSetting::Action::kWriteIfOther && fault.refused &&
-      fault.code == tenon::canopen::kAbortReadOnly) {
+      fault.code == tenon::canopen::kAbortReadOnly &&
+      (tenon::canopen::is_rpdo_mapping(index) || tenon::canopen::is_tpdo_mapping(index))) {
     return format(
         "its PDO mapping %04Xh is fixed (abort 0x%08X) and another than hw/PROTOCOL.md lists; a "
         "joint's depends on mode and targets_per_frame",

@@ -11,6 +11,7 @@
 #include "hw/arm/node_settings.h"
 #include "hw/arm/setting_runner.h"
 #include "hw/bus_load/bus_load.h"
+#include "hw/check/mapping_check.h"
 #include "hw/check/motor_check.h"
 #include "hw/check/object_names.h"
 #include "shared/base/error.h"
@@ -35,6 +36,10 @@ const char* access_text(DeviceObject::Access access) {
       return "wo";
     case DeviceObject::Access::kReadWrite:
       return "rw";
+    case DeviceObject::Access::kReadWriteInput:
+      return "rwr";
+    case DeviceObject::Access::kReadWriteOutput:
+      return "rww";
     case DeviceObject::Access::kConstant:
       return "const";
   }
@@ -44,6 +49,12 @@ const char* access_text(DeviceObject::Access access) {
 bool is_written(Action action) {
   return action == Action::kWrite || action == Action::kWriteOrTake ||
          action == Action::kWriteIfOther || action == Action::kTry;
+}
+
+bool is_mapping_entry(const ObjectSetting& setting) {
+  const bool mapping = tenon::canopen::is_rpdo_mapping(setting.index) ||
+                       tenon::canopen::is_tpdo_mapping(setting.index);
+  return mapping && setting.sub != 0;
 }
 
 /// A device as its file describes it, while bring-up goes through it.
@@ -112,7 +123,15 @@ class Model {
 
   void write(CheckLine& line, const DeviceObject& object) {
     line.device = describe(object);
-    const std::string refusal = why_refused(line.setting, object);
+    std::string refusal = why_refused(line.setting, object);
+    if (refusal.empty() && is_mapping_entry(line.setting)) {
+      const MappingAnswer answer = answer_to_mapping(file_, line.setting.index, line.setting.value);
+      if (answer.kind == MappingAnswer::Kind::kRefused) refusal = answer.why;
+      if (answer.kind == MappingAnswer::Kind::kUnknown) {
+        line.verdict = Verdict::kUnknown;
+        line.device += ": " + answer.why;
+      }
+    }
     if (refusal.empty()) {
       values_[line.setting.object()] = line.setting.value;
       return;
@@ -260,6 +279,7 @@ std::string line_text(const CheckLine& line) {
 
 struct JointVerdict {
   int refused = 0;
+  int unknown = 0;            ///< with a file, which does not say
   bool stops_at_once = true;  ///< by the one frame for all drives
 };
 
@@ -279,10 +299,11 @@ class JointLines {
     text += format("node %u (%s), drive %s, %s", static_cast<unsigned>(it.node), it.name.c_str(),
                    drive.name.c_str(), source.c_str());
     text += first ? "\n" : format(": as node %u, but for\n", static_cast<unsigned>(told.node));
-    JointVerdict verdict{0, takes_stop(drive)};
+    JointVerdict verdict{0, 0, takes_stop(drive)};
     for (const CheckLine& line : check_joint(robot_, joint, file)) {
       const bool is_refused = line.verdict == Verdict::kRefused;
       verdict.refused += is_refused ? 1 : 0;
+      verdict.unknown += file != nullptr && line.verdict == Verdict::kUnknown ? 1 : 0;
       const bool gives_up = line.setting.action == Action::kTry && line.verdict == Verdict::kOther;
       if (gives_up) verdict.stops_at_once = false;
       const std::string shown = line_text(line);
@@ -327,6 +348,7 @@ CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, Device
                        "what bring-up does", "verdict", "what the file says");
   JointLines lines(robot);
   int refused = 0;
+  int unsaid = 0;
   std::size_t unknown = 0;
   std::string remarks;
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
@@ -335,6 +357,7 @@ CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, Device
     const DeviceFile* described = file == files.end() ? nullptr : &file->second;
     const JointVerdict joint = lines.append(i, described, report.text);
     refused += joint.refused;
+    unsaid += joint.unknown;
     const SettingNote no_stop{SettingNote::Kind::kNoStop, robot.joints[i].node};
     if (!joint.stops_at_once) remarks += describe(no_stop, robot) + "\n";
   }
@@ -362,6 +385,10 @@ CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, Device
   } else if (unknown > 0) {
     report.text += format("nothing refused; %zu joint%s without a description file (--eds)",
                           unknown, unknown == 1 ? "" : "s");
+  } else if (unsaid > 0) {
+    report.text +=
+        format("nothing refused; of %d object%s the file does not say what bring-up needs", unsaid,
+               unsaid == 1 ? "" : "s");
   } else {
     report.text += "would come up";
   }

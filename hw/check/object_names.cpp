@@ -37,8 +37,6 @@ constexpr std::array<Named, 22> kNames = {{
     {tenon::canopen::kSupportedModes, "supported modes"},
 }};
 
-/// 512 PDOs each way have their parameters in a row.
-constexpr std::uint16_t kPdos = 0x200;
 constexpr std::array<Named, 4> kPdoNames = {{
     {tenon::canopen::kRpdoCommunication, "RPDO # identifier, type"},
     {tenon::canopen::kRpdoMapping, "RPDO # mapping"},
@@ -53,7 +51,7 @@ std::string object_name(std::uint16_t index) {
                                    [index](const Named& each) { return each.first == index; });
   if (named != kNames.end()) return named->second;
   for (const auto& [first, name] : kPdoNames) {
-    if (index < first || index >= first + kPdos) continue;
+    if (index < first || index >= first + tenon::canopen::kPdos) continue;
     std::string text = name;
     text.replace(text.find('#'), 1, std::to_string(index - first + 1));
     return text;

@@ -64,6 +64,14 @@ inline constexpr std::uint16_t kRpdoCommunication = 0x1400;
 inline constexpr std::uint16_t kRpdoMapping = 0x1600;
 inline constexpr std::uint16_t kTpdoCommunication = 0x1800;
 inline constexpr std::uint16_t kTpdoMapping = 0x1A00;
+/// 512 PDOs each way have their parameters in a row.
+inline constexpr std::uint16_t kPdos = 0x200;
+[[nodiscard]] constexpr bool is_rpdo_mapping(std::uint32_t index) {
+  return index >= kRpdoMapping && index < kRpdoMapping + kPdos;
+}
+[[nodiscard]] constexpr bool is_tpdo_mapping(std::uint32_t index) {
+  return index >= kTpdoMapping && index < kTpdoMapping + kPdos;
+}
 inline constexpr std::uint32_t kPdoInvalid = 0x80000000;  ///< bit 31 of a PDO's COB-ID
 inline constexpr std::uint32_t kPdoNoRtr = 0x40000000;
 

@@ -35,6 +35,7 @@ class Reader {
 
   DeviceFile read() {
     read_device();
+    read_dummies();
     read_lists();
     for (const auto& [name, section] : ini_.sections()) {
       const auto id = object_of_section(name);
@@ -46,12 +47,13 @@ class Reader {
       if (id && name.find("sub") != std::string::npos) read_stray_sub(*id, section);
     }
     if (file_.objects.empty()) ini_.refuse(1, "describes no object; is it an EDS or DCF file?");
-    file_.slips = std::move(ini_.slips());
+    file_.slips = ini_.take_slips();
     return std::move(file_);
   }
 
  private:
   void read_device();
+  void read_dummies();
   void read_lists();
   void read_index(std::uint16_t index, const IniSection& section);
   [[nodiscard]] std::int64_t guessed_kind(std::uint16_t index, const IniSection& section) const;
@@ -97,6 +99,11 @@ void Reader::read_device() {
   if (const IniSection* info = ini_.find("deviceinfo")) {
     if (const IniValue* vendor = info->find("vendorname")) file_.vendor = vendor->text;
     if (const IniValue* product = info->find("productname")) file_.product = product->text;
+    if (number(*info, "compactpdo").value_or(0) != 0) {
+      ini_.slip(info->find("compactpdo")->line,
+                "CompactPDO describes PDOs without sections of their own; those are taken as "
+                "missing, so write sections 14xx, 16xx, 18xx and 1Axx for them");
+    }
   } else {
     ini_.slip(1, "has no section [DeviceInfo]");
   }
@@ -113,6 +120,16 @@ void Reader::read_device() {
       ini_.refuse(section->line, "NodeID = " + std::to_string(*node) + ", must be in [1, 127]");
     }
     file_.node = static_cast<std::uint8_t>(*node);
+  }
+}
+
+void Reader::read_dummies() {
+  const IniSection* usage = ini_.find("dummyusage");
+  if (usage == nullptr) return;
+  file_.dummies = 0;
+  for (unsigned type = 1; type <= 7; ++type) {
+    const auto used = number(*usage, "dummy000" + std::to_string(type)).value_or(0) != 0;
+    if (used) *file_.dummies = static_cast<std::uint8_t>(*file_.dummies | 1U << type);
   }
 }
 
@@ -265,8 +282,8 @@ void Reader::read_access(const IniSection& section, DeviceObject& object) {
       {{"ro", Access::kReadOnly},
        {"wo", Access::kWriteOnly},
        {"rw", Access::kReadWrite},
-       {"rwr", Access::kReadWrite},
-       {"rww", Access::kReadWrite},
+       {"rwr", Access::kReadWriteInput},
+       {"rww", Access::kReadWriteOutput},
        {"const", Access::kConstant}}};
   const IniValue* value = section.find("accesstype");
   if (value == nullptr || value->text.empty()) {
@@ -308,11 +325,23 @@ std::optional<std::int64_t> Reader::read_limit(const IniSection& section, const 
                                                const DeviceObject& object) {
   if (!is_integer_type(object.type)) return std::nullopt;
   const IniValue* value = section.find(key);
-  if (value == nullptr || lower_case(value->text).find("$nodeid") != std::string::npos) {
+  if (value == nullptr) return std::nullopt;
+  const auto ignored = [&](const std::string& why) {
+    ini_.slip(value->line, "[" + section.name + "] " + key + " = " + value->text + " " + why +
+                               "; there is no such limit");
     return std::nullopt;
+  };
+  if (lower_case(value->text).find("$nodeid") != std::string::npos) {
+    return ignored("depends on the node, which limits do not");
   }
   const std::string text = without_comment(value->text);
-  return text.empty() ? std::nullopt : fitted(object, section, *value, text);
+  if (text.empty()) return std::nullopt;
+  const auto limit = fitted(object, section, *value, text);
+  // 65535 for "no limit" of an INTEGER16 is -1 by the letter.
+  if (key == "highlimit" && limit && *limit < 0 && !text.starts_with('-')) {
+    return ignored("is negative in its data type");
+  }
+  return limit;
 }
 
 void Reader::read_value(const IniSection& section, DeviceObject& object) {

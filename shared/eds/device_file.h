@@ -36,7 +36,16 @@ using DeviceObjectId = std::uint32_t;
 }
 
 struct DeviceObject {
-  enum class Access : std::uint8_t { kReadOnly, kWriteOnly, kReadWrite, kConstant };
+  /// Of what can be read and written, some is process data of one direction alone: rwr is carried
+  /// by TPDOs, rww by RPDOs.
+  enum class Access : std::uint8_t {
+    kReadOnly,
+    kWriteOnly,
+    kReadWrite,
+    kReadWriteInput,   ///< rwr
+    kReadWriteOutput,  ///< rww
+    kConstant
+  };
   std::string name{};
   std::uint16_t type = 0;  ///< code of CiA 301; 0Fh: DOMAIN
   Access access = Access::kReadWrite;
@@ -48,6 +57,16 @@ struct DeviceObject {
   bool adds_node = false;               ///< $NODEID stands in it, and is to be added
   std::string text{};                   ///< the value of everything else, as it stands
   int line = 0;                         ///< of its section
+
+  /// Whether a PDO that the device receives may set it.
+  [[nodiscard]] bool goes_into_rpdo() const {
+    return mappable && (access == Access::kWriteOnly || access == Access::kReadWrite ||
+                        access == Access::kReadWriteOutput);
+  }
+  /// Whether a PDO that the device sends may tell it.
+  [[nodiscard]] bool goes_into_tpdo() const {
+    return mappable && access != Access::kWriteOnly && access != Access::kReadWriteOutput;
+  }
 };
 
 struct DeviceFile {
@@ -56,6 +75,8 @@ struct DeviceFile {
   std::string product;
   std::optional<std::uint8_t> node;  ///< of a DCF
   std::map<DeviceObjectId, DeviceObject> objects;
+  /// Bit i: an RPDO may have a gap of data type i (0001h to 0007h). Unset: the file does not say.
+  std::optional<std::uint8_t> dummies;
   std::vector<std::string> slips;  ///< "FILE:LINE: what was wrong, and how it was read"
 
   [[nodiscard]] const DeviceObject* find(std::uint16_t index, std::uint8_t sub) const {

@@ -4,6 +4,7 @@
 
 #include "shared/base/error.h"
 #include "shared/base/printable.h"
+#include "shared/eds/eds_text.h"
 
 namespace tenon {
 namespace {
@@ -26,6 +27,13 @@ std::string key_of_section(std::string_view name) {
 std::string_view unquoted(std::string_view text) {
   const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
   return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
+}
+
+/// 7, 0x7 and 0x07 are one number.
+bool is_same(const std::string& a, const std::string& b) {
+  if (lower_case(a) == lower_case(b)) return true;
+  const auto number = parsed_number(without_comment(a));
+  return number && number == parsed_number(without_comment(b));
 }
 
 }  // namespace
@@ -96,7 +104,7 @@ void IniFile::add_value(IniSection& section, std::string_view line, int number,
   const std::string key = lower_case(trimmed(line.substr(0, equals)));
   const std::string text(unquoted(trimmed(line.substr(equals + 1))));
   const auto [found, fresh] = section.values.try_emplace(key, IniValue{text, number});
-  if (fresh || lower_case(found->second.text) == lower_case(text)) return;
+  if (fresh || is_same(found->second.text, text)) return;
   const std::string both = "[" + shown(section.name) + "] " + shown(key) + " = " + shown(text) +
                            " contradicts line " + std::to_string(found->second.line) +
                            ", which says " + shown(found->second.text);
@@ -114,7 +122,18 @@ const IniSection* IniFile::find(const std::string& key) const {
 std::string IniFile::place(int line) const { return name_ + ":" + std::to_string(line) + ": "; }
 
 void IniFile::slip(int line, const std::string& what) {
-  if (slips_.size() < kSlipsMax) slips_.push_back(printable(place(line) + what));
+  if (slips_.size() < kSlipsMax) {
+    slips_.push_back(printable(place(line) + what));
+  } else {
+    ++slips_untold_;
+  }
+}
+
+std::vector<std::string> IniFile::take_slips() {
+  if (slips_untold_ > 0) {
+    slips_.push_back(name_ + ": and " + std::to_string(slips_untold_) + " slips more");
+  }
+  return std::move(slips_);
 }
 
 void IniFile::refuse(int line, const std::string& what) const {

@@ -44,7 +44,8 @@ class IniFile {
   [[nodiscard]] const std::map<std::string, IniSection>& sections() const { return sections_; }
   /// @param key in small letters
   [[nodiscard]] const IniSection* find(const std::string& key) const;
-  [[nodiscard]] std::vector<std::string>& slips() { return slips_; }
+  /// At most 200, and then how many more there were.
+  [[nodiscard]] std::vector<std::string> take_slips();
 
   /// "FILE:LINE: "
   [[nodiscard]] std::string place(int line) const;
@@ -59,6 +60,7 @@ class IniFile {
   std::string name_;
   std::map<std::string, IniSection> sections_;  ///< by the name in small letters, without blanks
   std::vector<std::string> slips_;
+  std::size_t slips_untold_ = 0;
 };
 
 }  // namespace tenon

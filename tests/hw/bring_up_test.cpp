@@ -159,6 +159,15 @@ TEST(BringUp, AFixedMappingThatIsAnotherIsNamed) {
             "hw/PROTOCOL.md lists; a joint's depends on mode and targets_per_frame");
 }
 
+TEST(BringUp, AConstantThatIsNoMappingIsNotCalledOne) {
+  GantryOnBus gantry;
+  gantry.nodes[0]->objects[0x100500] = {4, 0x40000080};
+  gantry.nodes[0]->read_only.insert(0x100500);
+  EXPECT_EQ(gantry.refused(),
+            "node 1 (x): refused 1005h:0 = 0x80: object is read-only (abort 0x06010002); check the "
+            "device's manual and firmware, and the profile of its drive");
+}
+
 // What it refuses of that is left switched off: half a mapping would be none.
 TEST(BringUp, ADriveWithoutAnRpdoForTheStopIsBroughtUpWithoutItAndNamed) {
   for (const std::uint32_t object : {0x140101U, 0x160100U, 0x160101U}) {

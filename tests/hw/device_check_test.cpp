@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hw/check/mapping_check.h"
 #include "hw/check/object_names.h"
 #include "shared/canopen/robot_drives.h"
 #include "shared/config/files.h"
@@ -90,6 +91,78 @@ TEST(DeviceCheck, AFixedMappingThatIsTheOneWantedIsLeftAlone) {
   EXPECT_TRUE(check_report(it, for_all(it, file)).good);
   file.objects[0x160002].value = 0x607A0020;
   EXPECT_FALSE(check_report(it, for_all(it, file)).good);
+}
+
+// What a PDO carries must be there, as wide as it is mapped, and go that way: 6077h is told, 607Ah
+// is told the drive.
+TEST(DeviceCheck, WhatAMappingNamesIsLookedAt) {
+  const Robot it = robot("epos4");
+  DeviceFile good = twin("epos4");
+  // Mapped otherwise from its factory.
+  good.objects[0x160000].value = good.objects[0x1A0000].value = 0;
+  const auto entry_of = [&](const DeviceFile& file, std::uint32_t mapped) {
+    for (const CheckLine& line : check_joint(it, 0, &file)) {
+      const bool written = line.setting.action == canopen::ObjectSetting::Action::kWriteIfOther;
+      if (written && line.setting.value >> 8 == mapped) return line;
+    }
+    ADD_FAILURE() << std::hex << mapped << " is not mapped";
+    return CheckLine{};
+  };
+  const auto without = [&](auto change) {
+    DeviceFile file = good;
+    change(file);
+    return file;
+  };
+  const auto refused = [&](std::uint32_t mapped, auto change, const std::string& why) {
+    const CheckLine line = entry_of(without(change), mapped);
+    EXPECT_EQ(line.verdict, CheckLine::Verdict::kRefused) << line.device;
+    EXPECT_NE(line.device.find(why), std::string::npos) << line.device;
+  };
+  using Access = DeviceObject::Access;
+  EXPECT_EQ(entry_of(good, 0x607700).verdict, CheckLine::Verdict::kGood);
+  refused(
+      0x607700, [](DeviceFile& file) { file.objects[0x607700].mappable = false; },
+      "6077h:0 goes into no TPDO (abort 0x06040041)");
+  refused(
+      0x607700, [](DeviceFile& file) { file.objects.erase(0x607700); },
+      "6077h:0 is no object that it has (abort 0x06020000)");
+  refused(
+      0x607700, [](DeviceFile& file) { file.objects[0x607700].type = 0x0004; },
+      "6077h:0 has 32 bits where 16 are mapped (abort 0x06070010)");
+  refused(
+      0x607700, [](DeviceFile& file) { file.objects[0x607700].access = Access::kWriteOnly; },
+      "goes into no TPDO");
+  for (const Access access : {Access::kReadOnly, Access::kConstant, Access::kReadWriteInput}) {
+    refused(
+        0x607A00, [&](DeviceFile& file) { file.objects[0x607A00].access = access; },
+        "607Ah:0 goes into no RPDO (abort 0x06040041)");
+  }
+}
+
+TEST(DeviceCheck, GapsAreTakenWhereTheFileSaysSo) {
+  const Robot it = robot("csp6");
+  DeviceFile file;
+  const auto gap = [&] { return answer_to_mapping(file, 0x1601, 0x00040020).kind; };
+  EXPECT_EQ(gap(), MappingAnswer::Kind::kUnknown);
+  file.dummies = 0b0001'0000;
+  EXPECT_EQ(gap(), MappingAnswer::Kind::kTaken);
+  file.dummies = 0b1110'1110;
+  EXPECT_EQ(gap(), MappingAnswer::Kind::kRefused);
+  EXPECT_EQ(answer_to_mapping(file, 0x1A00, 0x00050008).kind, MappingAnswer::Kind::kRefused)
+      << "who sends has no gaps";
+}
+
+// Neither would it come up nor would it not.
+TEST(DeviceCheck, WhatTheFileDoesNotSayIsInTheVerdict) {
+  const Robot it = robot("epos4");
+  DeviceFile file = twin("epos4");
+  file.objects[0x650200].value.reset();
+  const CheckReport report = check_report(it, for_all(it, file));
+  EXPECT_TRUE(report.good);
+  EXPECT_NE(report.text.find("verdict: nothing refused; of 3 objects the file does not say what "
+                             "bring-up needs"),
+            std::string::npos)
+      << report.text;
 }
 
 // The RPDO by which all drives are stopped at once: a device that refuses it comes up without, is

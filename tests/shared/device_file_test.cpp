@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <string>
 
+#include "shared/base/text.h"
 #include "shared/config/files.h"
 #include "tests/support/places.h"
 #include "tests/support/refusal.h"
@@ -199,6 +200,67 @@ TEST(DeviceFile, DoubleSectionsThatAgreeAreOneAndSaid) {
 TEST(DeviceFile, DoublesThatContradictEachOtherAreRefused) {
   EXPECT_EQ(refused("[6064]\nDataType=4\nAccessType=ro\n[6064]\nDataType=7\n"),
             "a.eds:13: [6064] datatype = 7 contradicts line 10, which says 4; remove one of them");
+}
+
+TEST(DeviceFile, DoublesOfOneNumberAgree) {
+  const DeviceFile file = parsed(
+      "[6066]\nObjectType=0x7\nDataType=0x0006\nAccessType=rw\nDefaultValue=0xFB\n"
+      "[6066]\nObjectType=7\nDefaultValue=251 ; ms\n");
+  EXPECT_EQ(object(file, 0x6066).value, 251);
+}
+
+TEST(DeviceFile, SaysWhichWayProcessDataGoes) {
+  const auto of = [](const std::string& access, int mapping) {
+    return object(parsed("[607A]\nDataType=4\nAccessType=" + access +
+                         "\nPDOMapping=" + std::to_string(mapping) + "\n"),
+                  0x607A);
+  };
+  for (const char* access : {"rw", "rww", "wo"}) EXPECT_TRUE(of(access, 1).goes_into_rpdo());
+  for (const char* access : {"ro", "rwr", "const"}) EXPECT_FALSE(of(access, 1).goes_into_rpdo());
+  for (const char* access : {"rw", "rwr", "ro"}) EXPECT_TRUE(of(access, 1).goes_into_tpdo());
+  for (const char* access : {"rww", "wo"}) EXPECT_FALSE(of(access, 1).goes_into_tpdo());
+  EXPECT_FALSE(of("rw", 0).goes_into_rpdo());
+  EXPECT_FALSE(of("rw", 0).goes_into_tpdo());
+}
+
+TEST(DeviceFile, ReadsWhichGapsAMappingMayHave) {
+  EXPECT_FALSE(parsed("[1000]\nDataType=7\nAccessType=ro\n").dummies);
+  const DeviceFile file = parsed(
+      "[DummyUsage]\nDummy0001=0\nDummy0004=1\nDummy0007=1\n[1000]\nDataType=7\nAccessType=ro\n");
+  EXPECT_EQ(file.dummies, 0b1001'0000);
+}
+
+TEST(DeviceFile, ALimitThatIsNoneIsSaid) {
+  const auto slip_of = [](const std::string& limit) {
+    const DeviceFile file = parsed("[605A]\nDataType=3\nAccessType=rw\n" + limit + "\n");
+    EXPECT_FALSE(object(file, 0x605A).high);
+    return file.slips.empty() ? "" : file.slips.front();
+  };
+  EXPECT_EQ(slip_of("HighLimit=$NODEID+0x200"),
+            "a.eds:12: [605A] highlimit = $NODEID+0x200 depends on the node, which limits do not; "
+            "there is no such limit");
+  for (const char* all : {"HighLimit=65535", "HighLimit=0xFFFF"}) {
+    EXPECT_NE(slip_of(all).find("is negative in its data type; there is no such limit"),
+              std::string::npos);
+  }
+  const DeviceFile file = parsed("[605A]\nDataType=3\nAccessType=rw\nHighLimit=-1\n");
+  EXPECT_EQ(object(file, 0x605A).high, -1);
+}
+
+TEST(DeviceFile, SaysThatPdosWithoutSectionsAreNotRead) {
+  const DeviceFile file = parse_device_file(
+      "a.eds", "[DeviceInfo]\nCompactPDO=0x1F\n[1000]\nDataType=7\nAccessType=ro\n");
+  ASSERT_FALSE(file.slips.empty());
+  EXPECT_EQ(file.slips.front().rfind("a.eds:2: CompactPDO describes PDOs without sections", 0), 0U)
+      << file.slips.front();
+}
+
+TEST(DeviceFile, OfMoreSlipsThanAnybodyReadsItSaysHowMany) {
+  std::string sections;
+  for (int i = 0; i < 300; ++i) sections += format("[%04X]\nObjectType=7\n", 0x2000 + i);
+  const DeviceFile file = parsed(sections + "[1000]\nDataType=7\nAccessType=ro\n");
+  ASSERT_EQ(file.slips.size(), 201U);
+  EXPECT_EQ(file.slips.back(), "a.eds: and 100 slips more");
 }
 
 TEST(DeviceFile, OfDoublesThatDecideNothingTheFirstIsTaken) {

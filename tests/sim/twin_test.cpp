@@ -17,6 +17,7 @@ namespace {
 constexpr std::uint32_t kNoObject = 0x06020000;
 constexpr std::uint32_t kNoSub = 0x06090011;
 constexpr std::uint32_t kReadOnly = 0x06010002;
+constexpr std::uint32_t kNotMappable = 0x06040041;
 constexpr std::uint32_t kTooHigh = 0x06090031;
 constexpr std::uint32_t kTooLow = 0x06090032;
 constexpr std::uint32_t kLength = 0x06070012;
@@ -122,6 +123,36 @@ TEST(Twin, AMappingThatNoFrameHoldsIsCut) {
   bench.sync();
   bench.pass(2);
   for (const auto& data : bench.pdos(0x185)) EXPECT_EQ(data.size(), 2u);
+}
+
+// A device by the book refuses at its mapping what would not work in motion.
+TEST(Twin, MapsNothingAgainstItsAccess) {
+  DeviceFile file = tests::twin_file("epos4");
+  file.objects[0x607A00].access = DeviceObject::Access::kReadOnly;
+  file.objects[0x606400].access = DeviceObject::Access::kReadWriteOutput;
+  file.dummies = 0b1100'1110;
+  DriveBench bench(7);
+  become(bench, file);
+  bench.write_u32({0x1400, 1}, 0x80000207);
+  bench.write_u32({0x1800, 1}, 0x80000187);
+  bench.write_u8({0x1600, 0}, 0);
+  bench.write_u8({0x1A00, 0}, 0);
+  EXPECT_EQ(bench.write_u32({0x1600, 1}, 0x607A0020), kNotMappable);
+  EXPECT_EQ(bench.write_u32({0x1A00, 1}, 0x60640020), kNotMappable);
+  EXPECT_EQ(bench.write_u32({0x1600, 1}, 0x00040020), kNotMappable);
+  EXPECT_EQ(bench.write_u32({0x1600, 1}, 0x00070020), 0u);
+  EXPECT_EQ(bench.write_u32({0x1600, 1}, 0x60400010), 0u);
+}
+
+TEST(Twin, AnswersWithRealNumbersOfItsFile) {
+  DeviceFile file = tests::twin_file("epos4");
+  DeviceObject real;
+  real.type = 0x0008;
+  real.text = "0.5";
+  file.objects[0x2A0000] = real;
+  DriveBench bench(7);
+  become(bench, file);
+  EXPECT_EQ(bench.value({0x2A00}), 0x3F000000u);
 }
 
 }  // namespace

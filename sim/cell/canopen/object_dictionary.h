@@ -75,6 +75,10 @@ class ObjectDictionary {
   [[nodiscard]] const ObjectEntry* find(ObjectId id) const;
   /// Why find() found nothing: no such object, or no such sub-index of it.
   [[nodiscard]] std::uint32_t why_missing(ObjectId id) const;
+  /// The data types (bit i: 0001h to 0007h) of which an RPDO may have gaps; all, unless told.
+  void allow_dummies(std::uint8_t types) { dummies_ = types; }
+  [[nodiscard]] bool allows_dummy(std::uint32_t type) const { return (dummies_ >> type & 1U) != 0; }
+
   /// In the order of their identifiers.
   [[nodiscard]] const std::map<ObjectId, ObjectEntry>& entries() const { return entries_; }
   [[nodiscard]] const Description* description(std::uint16_t index) const;
@@ -98,6 +102,7 @@ class ObjectDictionary {
  private:
   std::map<ObjectId, ObjectEntry> entries_;
   std::map<std::uint16_t, Description> descriptions_;
+  std::uint8_t dummies_ = 0xFF;
 };
 
 /// Within the bounds of its type.

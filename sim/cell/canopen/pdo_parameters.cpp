@@ -141,6 +141,7 @@ std::uint32_t PdoParameters::check_entry(std::int64_t mapping) const {
   const ObjectId id = static_cast<ObjectId>(mapping >> 8);
   const std::size_t bits = static_cast<std::size_t>(mapping & 0xFF);
   if (direction_ == PdoDirection::kReceive && dummy_bits(id >> 8) != 0) {
+    if (!dictionary_.allows_dummy(id >> 8)) return canopen::kAbortNotMappable;
     return bits == dummy_bits(id >> 8) ? 0 : canopen::kAbortLength;
   }
   const ObjectEntry* entry = dictionary_.find(id);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@ constexpr std::array kMandatory = {
     object_id(canopen::kIdentity, 0), object_id(canopen::kIdentity, 1),
     object_id(canopen::kControlword), object_id(canopen::kStatusword),
 };
+
+constexpr std::uint16_t kReal32 = 0x0008;  // of CiA 301, as its bits
 
 bool is_makers_own(ObjectId id) { return id >> 8 >= 0x2000 && id >> 8 <= 0x5FFF; }
 
@@ -41,7 +45,7 @@ DataType type_of(std::uint16_t type) {
     case 0x0006:
       return DataType::kU16;
     case 0x0007:
-    case 0x0008:  // REAL32, as bits
+    case kReal32:
     case 0x0016:  // UNSIGNED24
       return DataType::kU32;
     default:
@@ -57,22 +61,30 @@ Access access_of(DeviceObject::Access access) {
     case DeviceObject::Access::kWriteOnly:
       return Access::kWriteOnly;
     case DeviceObject::Access::kReadWrite:
+    case DeviceObject::Access::kReadWriteInput:
+    case DeviceObject::Access::kReadWriteOutput:
       return Access::kReadWrite;
   }
   return Access::kReadOnly;
 }
 
 Mappable mappable_of(const DeviceObject& object) {
-  if (!object.mappable) return Mappable::kNo;
-  return access_of(object.access) == Access::kReadOnly ? Mappable::kTransmit : Mappable::kReceive;
+  if (object.goes_into_rpdo()) return Mappable::kReceive;
+  return object.goes_into_tpdo() ? Mappable::kTransmit : Mappable::kNo;
+}
+
+/// As the drive has it, where its file allows that direction.
+Mappable mappable_as(Mappable own, const DeviceObject& object) {
+  if (own == Mappable::kReceive && !object.goes_into_rpdo()) return Mappable::kNo;
+  if (own == Mappable::kTransmit && !object.goes_into_tpdo()) return Mappable::kNo;
+  return own == Mappable::kNo ? mappable_of(object) : own;
 }
 
 void adapt(ObjectEntry& entry, const DeviceObject& object, std::uint8_t node) {
   const DataType type = type_of(object.type);
   const bool measured = entry.access == Access::kReadOnly && entry.mappable == Mappable::kTransmit;
   entry.access = access_of(object.access);
-  entry.mappable =
-      entry.mappable == Mappable::kNo || !object.mappable ? mappable_of(object) : entry.mappable;
+  entry.mappable = mappable_as(entry.mappable, object);
   if (type == DataType::kText || entry.type == DataType::kText) {
     if (entry.type == DataType::kText)
       entry.text = entry.factory_text = entry.power_on_text = object.text;
@@ -86,6 +98,21 @@ void adapt(ObjectEntry& entry, const DeviceObject& object, std::uint8_t node) {
   set_default(entry, *object.value + (object.adds_node ? node : 0));
 }
 
+/// The bits of what an EDS writes for a type that is no integer of 32 bits or less, the lowest byte
+/// first.
+std::string wide_value(const DeviceObject& object, std::uint8_t node) {
+  constexpr std::uint16_t kReal64 = 0x0011;
+  std::uint64_t bits = 0;
+  if (object.type == kReal64) {
+    bits = std::bit_cast<std::uint64_t>(std::strtod(object.text.c_str(), nullptr));
+  } else {
+    bits = static_cast<std::uint64_t>(object.value.value_or(0) + (object.adds_node ? node : 0));
+  }
+  std::string bytes(data_type_bits(object.type) / 8, '\0');
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(bits >> 8 * i & 0xFF);
+  return bytes;
+}
+
 ObjectEntry stored(const DeviceObject& object, std::uint8_t node) {
   ObjectEntry entry;
   entry.name = object.name;
@@ -95,13 +122,16 @@ ObjectEntry stored(const DeviceObject& object, std::uint8_t node) {
   if (entry.type == DataType::kText) {
     constexpr std::size_t kTextMax = 64;
     const unsigned bits = data_type_bits(object.type);
-    entry.text = bits != 0 ? std::string(bits / 8, '\0') : object.text;
+    entry.text = bits != 0 ? wide_value(object, node) : object.text;
     entry.text_bytes_max = std::max(kTextMax, entry.text.size());
     return entry;
   }
   entry.low = object.low.value_or(entry.low);
   entry.high = object.high.value_or(entry.high);
   entry.value = object.value.value_or(0) + (object.adds_node ? node : 0);
+  if (object.type == kReal32) {
+    entry.value = std::bit_cast<std::uint32_t>(std::strtof(object.text.c_str(), nullptr));
+  }
   return entry;
 }
 
@@ -131,6 +161,7 @@ void cut_mapping(ObjectDictionary& dictionary, std::uint16_t index, bool transmi
 }  // namespace
 
 void make_twin(ObjectDictionary& dictionary, const DeviceFile& file, std::uint8_t node) {
+  if (file.dummies) dictionary.allow_dummies(*file.dummies);
   std::vector<ObjectId> ids;
   for (const auto& [id, entry] : dictionary.entries()) ids.push_back(id);
   for (const ObjectId id : ids) {
