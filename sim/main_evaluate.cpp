@@ -18,6 +18,7 @@
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/evaluation_html.h"
 #include "sim/evaluation/evaluation_json.h"
+#include "sim/evaluation/evaluation_junit.h"
 #include "sim/evaluation/figure_files.h"
 #include "sim/evaluation/run_maker.h"
 #include "sim/evaluation/summary.h"
@@ -95,7 +96,8 @@ void write_figures(FinalFiles& files, const fs::path& folder, const sim::Evaluat
 
 int evaluate(const EvaluateLine& line) {
   check_options(line);
-  for (const std::string& file : {line.json, line.report, line.summary, line.black_box}) {
+  for (const std::string& file :
+       {line.json, line.report, line.summary, line.junit, line.black_box}) {
     if (!file.empty()) check_writable(file);
   }
   if (!line.figures.empty()) make_folder(line.figures);
@@ -111,8 +113,11 @@ int evaluate(const EvaluateLine& line) {
   files.write({"--json", line.json}, sim::evaluation_json(evaluation));
   files.write({"--report", line.report}, sim::evaluation_html(evaluation));
   files.write({"--summary", line.summary}, sim::summary_json(evaluation));
+  files.write({"--junit", line.junit}, sim::evaluation_junit(evaluation, line.min_success));
   if (!line.figures.empty()) write_figures(files, line.figures, evaluation);
-  return files.conclude("tenon-evaluate", 0);
+  const std::string missed = line.min_success ? sim::shortfall(evaluation, *line.min_success) : "";
+  if (!missed.empty()) std::fprintf(stderr, "tenon-evaluate: --min-success: %s\n", missed.c_str());
+  return files.conclude("tenon-evaluate", missed.empty() ? 0 : 1);
 }
 
 // --- Command line -----------------------------------------------------------------------------
@@ -128,7 +133,8 @@ int parse_and_evaluate(int argc, char** argv) {
       "planner/tasks/box_on_table_2d.yaml \\\n                 --plan plan.tnp -n 1000 --seed 1 "
       "--threads 2 --json out.json --report out.html\n\n"
       "Run again, it goes on where it was stopped. Exit status: 0 all runs were made, however they "
-      "ended; 1 not all of what was asked for could be written; 2 bad input.");
+      "ended; 1 fewer than --min-success succeeded, or not all of what was asked for could be "
+      "written; 2 bad input.");
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--cell", line.cell, "cell file")->required();
   app.add_option("--task", line.task, "task file, or a variant of one: TASK.yaml#VARIANT")
@@ -160,6 +166,12 @@ int parse_and_evaluate(int argc, char** argv) {
   app.add_option("--report", line.report, "file for an HTML page with the plots");
   app.add_option("--summary", line.summary,
                  "file for the results without the single runs, as JSON");
+  app.add_option("--junit", line.junit,
+                 "file for CI tools: JUnit's XML, a testsuite a plan, a testcase a run");
+  app.add_option("--min-success", line.min_success,
+                 "proportion of each plan's runs that must succeed, such as 0.99: below it the "
+                 "exit status is 1")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--figures", line.figures, "folder for the page's plots, each an SVG file");
   CLI::Option* only =
       app.add_option("--only", line.only, "make one run again by its number, and tell it in full")

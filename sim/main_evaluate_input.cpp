@@ -35,11 +35,9 @@ std::string replay_of(const EvaluateLine& line) {
 
 /// What is written, and every log that is read, must be a file of its own.
 void check_files(const EvaluateLine& line) {
-  std::vector<FileOption> written = {{"the run log", log_file_of(line)},
-                                     {"--json", line.json},
-                                     {"--report", line.report},
-                                     {"--summary", line.summary},
-                                     {"--black-box", line.black_box}};
+  std::vector<FileOption> written = {
+      {"the run log", log_file_of(line)}, {"--json", line.json},   {"--report", line.report},
+      {"--summary", line.summary},        {"--junit", line.junit}, {"--black-box", line.black_box}};
   for (const std::string& log : line.merge) written.push_back({"--merge", log});
   std::vector<FileOption> read = {
       {"--cell", line.cell}, {"--task", line.task}, {"--experiment", line.experiment}};
@@ -89,9 +87,11 @@ void check_options(const EvaluateLine& line) {
   if (!line.black_box.empty() && line.plans.size() != 1) {
     throw InputError("--black-box " + line.black_box + ": holds one run; give one --plan");
   }
-  if (line.only && !(line.json + line.report + line.summary + line.figures).empty()) {
+  const std::string of_many = line.json + line.report + line.summary + line.figures + line.junit;
+  if (line.only && (!of_many.empty() || line.min_success)) {
     throw InputError(
-        "--only: tells one run here; leave out --json, --report, --summary and --figures");
+        "--only: tells one run here; leave out --json, --report, --summary, --figures, --junit and "
+        "--min-success");
   }
 }
 

@@ -33,6 +33,8 @@ struct EvaluateLine {
   std::string report;
   std::string summary;
   std::string figures;
+  std::string junit;
+  std::optional<double> min_success;  ///< proportion, 0 to 1
   std::string black_box;
 };
 

@@ -157,6 +157,18 @@ std::vector<FailureKind> kinds_of_failure(const Candidate& candidate) {
   return kinds;
 }
 
+std::string shortfall(const Evaluation& evaluation, double min_success) {
+  std::string text;
+  for (const Candidate& candidate : evaluation.candidates) {
+    const Rate success = summarise(evaluation.task, candidate).success;
+    if (success.value() >= min_success) continue;
+    text += (text.empty() ? "" : "; ") + candidate.file +
+            format(": %zu of %zu runs succeeded, which is %g and less than %g", success.successes,
+                   success.count, success.value(), min_success);
+  }
+  return text;
+}
+
 std::string replay_command(const Evaluation& evaluation, const Candidate& candidate,
                            std::size_t number) {
   return evaluation.replay + " --plan " + shell_word(candidate.file) + " --only " +

@@ -80,6 +80,10 @@ struct FailureKind {
 /// Alike in class, ending, step and outcome. Done but wrong before stopped, then the most frequent.
 [[nodiscard]] std::vector<FailureKind> kinds_of_failure(const Candidate& candidate);
 
+/// One line that names every plan whose runs succeeded more rarely than that, and how often they
+/// did; empty where none did. @param min_success proportion, 0 to 1
+[[nodiscard]] std::string shortfall(const Evaluation& evaluation, double min_success);
+
 /// The shell command that makes a run again.
 [[nodiscard]] std::string replay_command(const Evaluation& evaluation, const Candidate& candidate,
                                          std::size_t number);

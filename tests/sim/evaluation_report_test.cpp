@@ -7,6 +7,7 @@
 
 #include "sim/evaluation/evaluation_html.h"
 #include "sim/evaluation/evaluation_json.h"
+#include "sim/evaluation/evaluation_junit.h"
 #include "sim/evaluation/figure_files.h"
 #include "sim/evaluation/outline.h"
 #include "sim/evaluation/summary.h"
@@ -155,6 +156,24 @@ std::size_t count_of(const std::string& text, const std::string& piece) {
     ++count;
   }
   return count;
+}
+
+TEST(EvaluationJunit, AWorldThatCannotBeIsAnErrorAndNoFailure) {
+  const std::string xml = evaluation_junit(small_evaluation(), {});
+  EXPECT_EQ(count_of(xml, "<testcase "), 6U);
+  EXPECT_EQ(count_of(xml, "<failure "), 2U);
+  EXPECT_EQ(count_of(xml, "<error "), 1U);
+  EXPECT_EQ(count_of(xml, " tests='6' failures='2' errors='1'"), 2U);  // of the suite, of all
+  EXPECT_NE(xml.find("type='done_but_wrong'"), std::string::npos);
+  EXPECT_NE(xml.find("step 1: &lt;contact&gt; where none was"), std::string::npos);
+}
+
+TEST(EvaluationJunit, OnlyASuiteThatReachesItsBoundSkipsWhatFailed) {
+  EXPECT_EQ(count_of(evaluation_junit(small_evaluation(), 0.5), "<skipped "), 3U);
+  EXPECT_EQ(count_of(evaluation_junit(small_evaluation(), 0.51), "<skipped "), 0U);
+  EXPECT_EQ(shortfall(small_evaluation(), 0.5), "");
+  EXPECT_EQ(shortfall(small_evaluation(), 0.51),
+            "plans/p.tnp: 3 of 6 runs succeeded, which is 0.5 and less than 0.51");
 }
 
 TEST(EvaluationHtml, StandsAloneAndMarksEveryFailure) {
