@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hw/bus_load/bus_load.h"
@@ -14,12 +15,15 @@
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
 #include "shared/config/load.h"
+#include "shared/system/fan_out.h"
 #include "shared/system/record_file.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/evaluation_html.h"
 #include "sim/evaluation/evaluation_json.h"
 #include "sim/evaluation/evaluation_junit.h"
 #include "sim/evaluation/figure_files.h"
+#include "sim/evaluation/recording.h"
+#include "sim/evaluation/run_line.h"
 #include "sim/evaluation/run_maker.h"
 #include "sim/evaluation/summary.h"
 #include "sim/evaluation_chain/trial_runner.h"
@@ -33,12 +37,17 @@ namespace fs = std::filesystem;
 
 // --- Many runs --------------------------------------------------------------------------------
 
-void make_runs(const EvaluateLine& line, const Cell& cell, sim::Evaluation& evaluation) {
-  std::vector<sim::TrialRunner> runners;
+using Runners = std::vector<sim::TrialRunner>;
+
+Runners runners_of(const Cell& cell, const sim::Evaluation& evaluation) {
+  Runners runners;
   for (const sim::Candidate& candidate : evaluation.candidates) {
     runners.emplace_back(cell, evaluation.task, candidate);
   }
+  return runners;
+}
 
+void make_runs(const EvaluateLine& line, const Runners& runners, sim::Evaluation& evaluation) {
   sim::RunMaker::Parameters parameters;
   parameters.count = line.count;
   parameters.threads = line.threads;
@@ -58,6 +67,43 @@ void make_runs(const EvaluateLine& line, const Cell& cell, sim::Evaluation& eval
              [&](const sim::Run& run) {
                progress.count(classify(run.result) == sim::TrialClass::kSucceeded);
              });
+}
+
+/// What the page replays is made again, and kept as it goes. A run that another machine made, and
+/// that comes out otherwise here, is left out and said.
+void record_examples(const EvaluateLine& line, const Runners& runners,
+                     sim::Evaluation& evaluation) {
+  struct Made {
+    std::size_t plan;
+    const sim::Run* run;
+    sim::Recording recording;
+    bool same = false;
+  };
+  std::vector<Made> all;
+  const std::size_t most = sim::kReplaysMax / evaluation.candidates.size();
+  for (std::size_t plan = 0; plan < evaluation.candidates.size(); ++plan) {
+    for (const sim::Run* run : sim::examples(evaluation.candidates[plan], most)) {
+      all.push_back({plan, run, {}, false});
+    }
+  }
+  fan_out(all.size(), line.threads, [&](std::size_t i, std::size_t) {
+    Made& made = all[i];
+    const sim::TrialResult result = runners[made.plan].record(made.run->trial, made.recording);
+    made.same =
+        sim::run_line("", {made.run->trial, result}, false) == sim::run_line("", *made.run, false);
+  });
+  for (Made& made : all) {
+    const std::size_t number = made.run->trial.number;
+    if (made.same && made.recording.moments().empty()) continue;  // no plan began
+    if (made.same) {
+      evaluation.candidates[made.plan].recordings.emplace(number, std::move(made.recording));
+    } else {
+      std::fprintf(stderr,
+                   "tenon-evaluate: run %zu came out otherwise when it was made again, and cannot "
+                   "be replayed; was it made by another machine?\n",
+                   number);
+    }
+  }
 }
 
 /// One run of each plan, told step by step.
@@ -107,7 +153,9 @@ int evaluate(const EvaluateLine& line) {
   sim::Evaluation evaluation = evaluation_of(line, cell);
   if (line.only) return replay(line, cell, evaluation);
   sim::check_bins(evaluation, line.count);
-  make_runs(line, cell, evaluation);
+  const Runners runners = runners_of(cell, evaluation);
+  make_runs(line, runners, evaluation);
+  if (!line.report.empty()) record_examples(line, runners, evaluation);
   std::fputs(sim::describe(evaluation).c_str(), stdout);
   FinalFiles files;
   files.write({"--json", line.json}, sim::evaluation_json(evaluation));
@@ -121,6 +169,22 @@ int evaluate(const EvaluateLine& line) {
 }
 
 // --- Command line -----------------------------------------------------------------------------
+
+/// What is written of all runs, and what they must come to.
+void add_files(CLI::App& app, EvaluateLine& line) {
+  app.add_option("--json", line.json, "file for results and all runs");
+  app.add_option("--report", line.report,
+                 "file for an HTML page: paths, replays of failures, plots");
+  app.add_option("--summary", line.summary,
+                 "file for the results without the single runs, as JSON");
+  app.add_option("--junit", line.junit,
+                 "file for CI tools: JUnit's XML, a testsuite a plan, a testcase a run");
+  app.add_option("--min-success", line.min_success,
+                 "proportion of each plan's runs that must succeed, such as 0.99: below it the "
+                 "exit status is 1")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--figures", line.figures, "folder for the page's plots, each an SVG file");
+}
 
 int parse_and_evaluate(int argc, char** argv) {
   EvaluateLine line;
@@ -162,17 +226,7 @@ int parse_and_evaluate(int argc, char** argv) {
           ->capture_default_str();
   CLI::Option* merge =
       app.add_option("--merge", line.merge, "run logs of shards; what they lack is made");
-  app.add_option("--json", line.json, "file for results and all runs");
-  app.add_option("--report", line.report, "file for an HTML page with the plots");
-  app.add_option("--summary", line.summary,
-                 "file for the results without the single runs, as JSON");
-  app.add_option("--junit", line.junit,
-                 "file for CI tools: JUnit's XML, a testsuite a plan, a testcase a run");
-  app.add_option("--min-success", line.min_success,
-                 "proportion of each plan's runs that must succeed, such as 0.99: below it the "
-                 "exit status is 1")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--figures", line.figures, "folder for the page's plots, each an SVG file");
+  add_files(app, line);
   CLI::Option* only =
       app.add_option("--only", line.only, "make one run again by its number, and tell it in full")
           ->check(CLI::Range(0, 10'000'000))

@@ -15,6 +15,7 @@
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
 #include "shared/drawing/page.h"
+#include "shared/drawing/step_words.h"
 #include "shared/drawing/view.h"
 
 namespace tenon::planner {
@@ -117,7 +118,7 @@ std::string step_cells(const ReportData& data, std::size_t index) {
   std::string html =
       format("<th scope='row'><button type='button' class='jump' data-step='%zu'>%zu</button></th>",
              index + 1, index) +
-      "<td data-label='Move'>" + displacement_text(step) +
+      "<td data-label='Move'>" + drawing::displacement_text(step) +
       format("</td><td class='num' data-label='Slow from'>%.0f mm</td>", 1e3 * step.slow_from_m);
   if (index + 1 >= data.nodes.size()) return html + "<td></td><td></td>";
   return html + "<td data-label='Particles'>" + outcomes_text(data, index) +

@@ -11,7 +11,7 @@
 #include "planner/report/report_words.h"
 #include "planner/report/touched.h"
 #include "shared/drawing/scene_json.h"
-#include "shared/drawing/view.h"
+#include "shared/drawing/step_words.h"
 
 namespace tenon::planner {
 namespace {
@@ -48,16 +48,12 @@ Json json_of(const ReportData& data, const Chain& chain) {
   return json;
 }
 
-Json view_json(const drawing::View& view) {
-  return {{"right", view.right}, {"up", view.up}, {"along", view.along}, {"title", view.title}};
-}
-
 Json step_json(const ReportData& data, std::size_t index) {
   const Step& step = data.plan.steps[index];
   Json json;
   json["displacement"] = rounded_json(step.displacement);
   json["carried_axes"] = data.plan.parameter_sets[step.parameter_set].carried_axes;
-  json["words"] = displacement_text(step);
+  json["words"] = drawing::displacement_text(step);
   if (index + 1 < data.nodes.size()) {
     json["outcomes"] = outcomes_text(data, index);
     json["touched"] = touched_after(data, index);
@@ -79,10 +75,7 @@ std::string page_json(const ReportData& data) {
   json["start_name"] = plan.start_name;
   json["method"] = to_string(plan.method);
   json["scene"] = Json::parse(drawing::scene_json(data.task));
-  json["views"] = Json::array();
-  for (const drawing::View& view : drawing::views_of(plan.coordinates)) {
-    json["views"].push_back(view_json(view));
-  }
+  json["views"] = Json::parse(drawing::views_json(plan.coordinates));
   json["coordinates"] = Json::array();
   for (int axis = 0; axis < 6; ++axis) {
     if (has(plan.coordinates, axis)) json["coordinates"].push_back(axis);

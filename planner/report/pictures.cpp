@@ -7,6 +7,7 @@
 
 #include "planner/report/touched.h"
 #include "shared/base/text.h"
+#include "shared/task/touched.h"
 
 namespace tenon::planner {
 namespace {

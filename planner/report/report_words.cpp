@@ -1,7 +1,6 @@
 #include "planner/report/report_words.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
@@ -25,18 +24,6 @@ std::string spread_text(const Plan& plan, const Vector6& spread) {
     if (!has(plan.coordinates, axis)) continue;
     text += (text.empty() ? "" : ", ") + std::string(axis_name(axis)) + " " +
             amount(spread[axis], axis);
-  }
-  return text;
-}
-
-std::string displacement_text(const Step& step) {
-  std::string text;
-  for (int axis = 0; axis < 6; ++axis) {
-    const double d = step.displacement[axis];
-    // What the texts would round to nothing.
-    if (std::abs(shown(d, axis)) < (axis < 3 ? 0.5 : 0.05)) continue;
-    text += (text.empty() ? "" : ", ") +
-            format(axis < 3 ? "%s %+.0f mm" : "%s %+.1f\u00b0", axis_name(axis), shown(d, axis));
   }
   return text;
 }

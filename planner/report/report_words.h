@@ -21,8 +21,6 @@ inline constexpr double kCollapsed = 0.2;
 /// The coordinates of the plan, each with an amount.
 [[nodiscard]] std::string spread_text(const Plan& plan, const Vector6& spread);
 
-[[nodiscard]] std::string displacement_text(const Step& step);
-
 /// How many particles had which outcome in the step: "3 contact, 1 reached".
 [[nodiscard]] std::string outcomes_text(const ReportData& data, std::size_t step);
 

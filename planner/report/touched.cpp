@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "shared/task/ring.h"
+#include "shared/task/touched.h"
 
 namespace tenon::planner {
 namespace {
@@ -25,20 +25,9 @@ std::set<std::string> only_in_first(const ReportData& data, std::size_t step, bo
 
 }  // namespace
 
-bool is_floor(const Shape& shape, const Pose& goal) {
-  return shape.pose.position_m.z() + 0.5 * shape.size_m.z() <= goal.position_m.z() + kAboveFloor_m;
-}
-
 std::set<std::string> touched_by(const ReportData& data, const Chain& chain, std::size_t move) {
-  std::set<std::string> names;
-  if (move >= chain.touching.size()) return names;
-  for (const Shape& shape : data.task.environment) {
-    if (is_floor(shape, data.plan.goal) && (data.plan.coordinates >> 2 & 1U) == 0) continue;
-    for (const std::string& pair : chain.touching[move]) {
-      if (pair.ends_with("-" + shape.name)) names.insert(piece_of(shape.name));
-    }
-  }
-  return names;
+  if (move >= chain.touching.size()) return {};
+  return touched_pieces(data.task, chain.touching[move]);
 }
 
 std::set<std::string> touched_after(const ReportData& data, std::size_t step) {

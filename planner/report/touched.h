@@ -11,12 +11,6 @@
 
 namespace tenon::planner {
 
-/// A section seen from above is cut this far over the tip.
-inline constexpr double kAboveFloor_m = 1e-3;
-
-/// What the part stands on rather than bumps into.
-[[nodiscard]] bool is_floor(const Shape& shape, const Pose& goal);
-
 /// What some particle touches after the step.
 [[nodiscard]] std::set<std::string> touched_after(const ReportData& data, std::size_t step);
 

@@ -22,12 +22,6 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
-std::string document(const Page& page) {
-  return "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>" + page.title +
-         "</title>\n<style>" + page.style + "</style></head>\n<body>\n<h1>" + page.heading +
-         "</h1>\n" + page.body + "</body></html>\n";
-}
-
 std::string figure(const std::string& svg, const std::string& caption) {
   return "<figure>" + svg + "<figcaption>" + caption + "</figcaption></figure>\n";
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A page of its own in HTML, and elements of SVG inside it. Pure; any thread.
+// Elements of HTML and SVG. Pure; any thread.
 
 #include <string>
 #include <string_view>
@@ -11,15 +11,6 @@ namespace tenon::drawing {
 
 /// `&`, `<`, `>` and `'` as HTML and SVG have them.
 [[nodiscard]] std::string escaped(std::string_view text);
-
-/// One document without outside resources. All parts are HTML already.
-struct Page {
-  std::string title;  ///< of the window
-  std::string style;  ///< CSS
-  std::string heading;
-  std::string body;  ///< below the heading
-};
-[[nodiscard]] std::string document(const Page& page);
 
 /// A figure element on a line of its own.
 [[nodiscard]] std::string figure(const std::string& svg, const std::string& caption);

@@ -7,6 +7,7 @@
 
 #include "shared/base/text.h"
 #include "shared/drawing/surface.h"
+#include "shared/drawing/view.h"
 #include "shared/task/ring.h"
 
 namespace tenon::drawing {
@@ -67,6 +68,16 @@ std::string pose_json(const Pose& pose) {
     json += "," + number(value);
   }
   return json + "]";
+}
+
+std::string views_json(CoordinateMask coordinates) {
+  std::string json;
+  for (const View& view : views_of(coordinates)) {
+    json += (json.empty() ? "" : ",") +
+            format(R"({"right":%d,"up":%d,"along":%d,"title":)", view.right, view.up, view.along) +
+            quoted(view.title) + "}";
+  }
+  return "[" + json + "]";
 }
 
 std::string scene_json(const Task& task) {

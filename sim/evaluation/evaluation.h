@@ -13,6 +13,7 @@
 #include "shared/plan/plan.h"
 #include "shared/task/task.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/evaluation/recording.h"
 #include "sim/evaluation/run_line.h"
 #include "sim/evaluation/trial.h"
 
@@ -23,8 +24,9 @@ struct Candidate {
   std::string file;
   std::string hash;  ///< of the file
   Plan plan;
-  Start start;                      ///< the task's, of the plan's name
-  std::map<std::size_t, Run> runs;  ///< by number
+  Start start;                                  ///< the task's, of the plan's name
+  std::map<std::size_t, Run> runs;              ///< by number
+  std::map<std::size_t, Recording> recordings;  ///< of the few that a page replays, by number
 };
 
 struct Evaluation {

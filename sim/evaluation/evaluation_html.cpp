@@ -1,40 +1,32 @@
 #include "sim/evaluation/evaluation_html.h"
 
+#include <algorithm>
+
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
+#include "shared/drawing/page.h"
 #include "shared/drawing/view.h"
 #include "shared/task/spread.h"
+#include "sim/evaluation/evaluation_page_data.h"
 #include "sim/evaluation/figures.h"
+#include "sim/evaluation/run_sample.h"
 #include "sim/evaluation/summary.h"
 
 namespace tenon::sim {
 namespace {
 
-constexpr const char* kStyle =
-    "body{font:15px/1.45 system-ui,sans-serif;max-width:1120px;margin:28px auto;padding:0 18px;"
-    "color:#222}h1{font-size:26px;margin:0 0 2px}h2{font-size:19px;margin:40px 0 6px}"
-    "p{margin:4px 0 12px;max-width:900px}.grey{color:#666}"
-    "table{border-collapse:collapse;font-size:14px;margin:14px 0}"
-    "td,th{border-bottom:1px solid #ddd;padding:5px 12px 5px 0;text-align:left;"
-    "vertical-align:top}th{color:#666;font-weight:600;border-bottom:2px solid #bbb}"
-    ".nowrap td{white-space:nowrap}td.num,th.num{text-align:right}td "
-    "svg{display:inline-block;vertical-align:-3px;"
-    "margin-right:8px}code{font-size:12px;color:#444}"
-    ".row{display:flex;flex-wrap:wrap;gap:18px 22px;align-items:flex-start}"
-    "figure{margin:0 0 14px}figcaption{font-size:13px;color:#555;max-width:580px;margin:2px 0 0 "
-    "74px}"
-    ".narrow figcaption{max-width:320px}svg{display:block}"
-    ".key{display:inline-block;margin-right:18px}.key svg{display:inline-block;"
-    "vertical-align:-3px;margin-right:5px}";
+// Over all plans, so that the page stays below 3 MB.
+constexpr std::size_t kRunsDrawn = 600;
+constexpr std::size_t kFailuresListed = 200;
 
 std::string percent(double part) { return format("%.1f", 1e2 * part); }
 
 std::string rate_cell(const Rate& rate) {
   const Interval interval = rate.interval();
-  return "<td>" + rate_bar(rate) + "<b>" + percent(rate.value()) + " %</b> <span class='grey'>[" +
-         percent(interval.low) + ", " + percent(interval.high) + "] " +
-         format("%zu of %zu", rate.successes, rate.count) + "</span></td>";
+  return "<td class='rate'>" + rate_bar(rate) + "<b>" + percent(rate.value()) +
+         " %</b> <span class='term'>[" + percent(interval.low) + ", " + percent(interval.high) +
+         "] " + format("%zu of %zu", rate.successes, rate.count) + "</span></td>";
 }
 
 std::string number_cell(const std::string& text) { return "<td class='num'>" + text + "</td>"; }
@@ -42,12 +34,13 @@ std::string number_cell(const std::string& text) { return "<td class='num'>" + t
 std::string legend() {
   const auto cross = [](const char* colour) {
     return std::string(
-               "<svg width='14' height='14'><path d='M2 2l10 10m0 -10l-10 10' "
+               "<svg width='14' height='14' aria-hidden='true'><path d='M2 2l10 10m0 -10l-10 10' "
                "stroke-width='2' stroke='") +
            colour + "'/></svg>";
   };
   return std::string(
-             "<p><span class='key'><svg width='14' height='14'><circle cx='7' cy='7' r='5' "
+             "<p class='legend'><span class='key'><svg width='14' height='14' "
+             "aria-hidden='true'><circle cx='7' cy='7' r='5' "
              "fill='") +
          kSucceededColour + "'/></svg>done and at the goal</span><span class='key'>" +
          cross(kStoppedColour) + "stopped with a reason</span><span class='key'>" +
@@ -65,24 +58,33 @@ class Report {
   explicit Report(const Evaluation& evaluation) : evaluation_(evaluation), task_(evaluation.task) {
     for (const Candidate& candidate : evaluation.candidates) {
       summaries_.push_back(summarise(task_, candidate));
+      samples_.push_back(sample_of(candidate, kRunsDrawn / evaluation.candidates.size()));
     }
   }
 
   [[nodiscard]] std::string html() const {
     const std::string title = drawing::escaped(task_.name);
-    std::string body = opening() + legend() + plans_table() + errors_table();
-    for (std::size_t i = 0; i < summaries_.size(); ++i) body += section(i);
-    return drawing::document(
-        {title + ": evaluation", std::string(kStyle) + kFigureStyle, title, body});
+    drawing::LivePage page;
+    page.title = title + ": evaluation";
+    page.heading = "<p class='kicker'>Evaluation</p><h1>" + title + " <span>on cell " +
+                   drawing::escaped(evaluation_.cell) + "</span></h1>\n" + opening() + badges();
+    page.body = std::string("<style>") + kFigureStyle + "</style>\n" +
+                "<section class='stage' aria-label='Where the part went' data-part='stage'>"
+                "</section>\n<section data-part='forces' aria-labelledby='forces'><h2 id='forces'>"
+                "Forces of the run that is shown</h2></section>\n"
+                "<section aria-labelledby='success'><h2 id='success'>Success</h2>\n" +
+                plans_table() + errors_table() + "</section>\n";
+    for (std::size_t i = 0; i < summaries_.size(); ++i) page.body += section(i);
+    page.json = evaluation_page_json(evaluation_, samples_);
+    return drawing::live_document(page);
   }
 
  private:
   [[nodiscard]] std::string opening() const {
     std::size_t runs = 0;
     for (const Candidate& candidate : evaluation_.candidates) runs += candidate.runs.size();
-    std::string text = format("<p class='grey'>%zu runs on cell ", runs) +
-                       drawing::escaped(evaluation_.cell) +
-                       format(", seed %llu. ", static_cast<unsigned long long>(evaluation_.seed));
+    std::string text = format("<p class='lead'>%zu runs, seed %llu. ", runs,
+                              static_cast<unsigned long long>(evaluation_.seed));
     text += evaluation_.ranges
                 ? "Where the environment stands is drawn, and how else the world differs: "
                   "experiment " +
@@ -91,9 +93,24 @@ class Report {
     return text + " Every plan meets the same worlds. Intervals: 95 % (Wilson).</p>\n";
   }
 
+  /// Each plan's success, at a glance.
+  [[nodiscard]] std::string badges() const {
+    std::string html = "<ul class='badges'>\n";
+    for (std::size_t i = 0; i < summaries_.size(); ++i) {
+      const Rate& rate = summaries_[i].success;
+      html +=
+          std::string("<li class='") + (rate.successes == rate.count ? "good" : "bad") + "'>" +
+          name_of(evaluation_.candidates[i]) +
+          format(": %zu of %zu at the goal, %zu stopped, %zu done but wrong</li>\n", rate.successes,
+                 rate.count, summaries_[i].stopped, summaries_[i].done_but_wrong);
+    }
+    return html + "</ul>\n";
+  }
+
   [[nodiscard]] std::string plans_table() const {
     std::string html =
-        "<table class='nowrap'><tr><th>Plan</th><th>Method</th><th class='num'>Steps</th>"
+        "<div class='wide'><table class='nowrap'><tr><th>Plan</th><th>Method</th><th "
+        "class='num'>Steps</th>"
         "<th>Succeeded</th>";
     for (const RateWithin& within : summaries_.front().within) {
       html += "<th>W" + within_text(evaluation_.task, within.distance).substr(1) +
@@ -107,19 +124,19 @@ class Report {
               "</a></td><td>" + to_string(candidate.plan.method) + "</td>" +
               number_cell(std::to_string(candidate.plan.steps.size())) + rate_cell(summary.success);
       for (const RateWithin& within : summary.within) {
-        html += "<td><b>" + percent(within.rate.value()) + " %</b> <span class='grey'>[" +
+        html += "<td><b>" + percent(within.rate.value()) + " %</b> <span class='term'>[" +
                 percent(within.rate.interval().low) + ", " + percent(within.rate.interval().high) +
                 "]</span></td>";
       }
       html += number_cell(std::to_string(summary.stopped)) +
               number_cell(std::to_string(summary.done_but_wrong)) + "</tr>\n";
     }
-    return html + "</table>\n";
+    return html + "</table></div>\n";
   }
 
   [[nodiscard]] std::string errors_table() const {
     std::string html =
-        "<table class='nowrap'><tr><th>Runs that were done</th><th>Axis</th>"
+        "<div class='wide'><table class='nowrap'><tr><th>Runs that were done</th><th>Axis</th>"
         "<th class='num'>Initial deviation</th><th class='num'>Final deviation</th>"
         "<th class='num'>Ratio</th><th class='num'>Final mean</th>"
         "<th class='num'>Distance, mean / max</th>"
@@ -147,20 +164,22 @@ class Report {
         first = false;
       }
     }
-    return html + "</table>\n";
+    return html + "</table></div>\n";
   }
 
   [[nodiscard]] std::string section(std::size_t i) const {
     const Candidate& candidate = evaluation_.candidates[i];
-    std::string html = "<h2 id='plan" + std::to_string(i) + "'>" + name_of(candidate) + ": " +
-                       to_string(candidate.plan.method) + ", start " +
+    const std::string id = "plan" + std::to_string(i);
+    std::string html = "<section aria-labelledby='" + id + "'><h2 id='" + id + "'>" +
+                       name_of(candidate) + ": " + to_string(candidate.plan.method) + ", start " +
                        drawing::escaped(candidate.plan.start_name) + "</h2>\n";
     if (candidate.plan.task_hash != task_.hash) {
-      html += "<p class='grey'>The plan was made for another task, or another variant of it.</p>\n";
+      html += "<p class='note'>The plan was made for another task, or another variant of it.</p>\n";
     }
-    for (const drawing::View& view : drawing::views_of(task_.coordinates)) {
-      html += figures(candidate, view);
-    }
+    html += failures_part(i) + "<div class='plots'>\n";
+    for (const drawing::View& view : drawing::views_of(task_.coordinates)) html += places(i, view);
+    html += drawing::figure(figure_of_errors(evaluation_, candidate),
+                            "How far from the goal the runs ended; logarithmic.");
     if (!evaluation_.by.empty()) {
       html += drawing::figure(
           figure_of_breakdown(evaluation_, candidate),
@@ -169,76 +188,109 @@ class Report {
               : "Success in % over the two drawn quantities; point at a cell for its "
                 "counts.");
     }
-    return html + failures_table(candidate);
+    return html + "</div>\n" + legend() + "</section>\n";
   }
 
-  /// Two columns.
-  [[nodiscard]] std::string figures(const Candidate& candidate, const drawing::View& view) const {
-    std::string html = "<div class='row'>\n<div>\n";
-    html += drawing::figure(
-        figure_of_runs(evaluation_, candidate, view),
-        "Where each run began (small dots) and ended, joined by a line, seen from the "
-        "environment as it really stood. Dashed: the part at its nominal start; green: "
-        "at the goal.");
-    html += drawing::figure(figure_of_errors(evaluation_, candidate),
-                            "How far from the goal the runs ended; logarithmic.");
-    html += "</div>\n<div class='narrow'>\n";
-    html += drawing::figure(
-        figure_of_draws(evaluation_, candidate, view),
-        "Where the environment really stood, about where the plan believed it (green). "
-        "Rings: standard deviations.");
-    html += drawing::figure(figure_of_ends(evaluation_, candidate, view),
-                            "Where the part ended about its goal, and the tolerance of " +
-                                format("%g mm.", 1e3 * task_.goal_tolerance_m));
-    return html + "</div>\n</div>\n";
+  /// Where runs went (which the moving picture shows, too), where the environment stood, and where
+  /// they ended.
+  [[nodiscard]] std::string places(std::size_t i, const drawing::View& view) const {
+    const Candidate& sample = samples_[i];
+    const std::size_t all = evaluation_.candidates[i].runs.size();
+    const std::string shown =
+        sample.runs.size() == all ? "" : format(" %zu of %zu runs.", sample.runs.size(), all);
+    return "<div class='still'>" +
+           drawing::figure(
+               figure_of_runs(evaluation_, sample, view),
+               "The way of each run from where it began (small dots), step by step, seen from the "
+               "environment as it really stood. Dashed: the part at its nominal start; green: "
+               "at the goal." +
+                   shown) +
+           "</div>\n" +
+           drawing::figure(
+               figure_of_draws(evaluation_, sample, view),
+               "Where the environment really stood, about where the plan believed it (green). "
+               "Rings: standard deviations." +
+                   shown) +
+           drawing::figure(figure_of_ends(evaluation_, sample, view),
+                           "Where the part ended about its goal, and the tolerance of " +
+                               format("%g mm.", 1e3 * task_.goal_tolerance_m) + shown);
   }
 
   [[nodiscard]] static std::string class_cell(const TrialResult& result) {
-    return std::string("<td style='color:") + colour_of(classify(result)) + "'>" +
-           (classify(result) == TrialClass::kStopped ? "stopped" : "done but wrong") + "</td>";
+    const bool stopped = classify(result) == TrialClass::kStopped;
+    return std::string("<td class='") + (stopped ? "stopped" : "wrong") + "'>" +
+           (stopped ? "stopped" : "done but wrong") + "</td>";
   }
 
   [[nodiscard]] static std::string step_cells(const TrialResult& result) {
-    return number_cell(result.step < 0 ? "" : std::to_string(result.step)) + "<td>" +
+    return "<td class='num' data-label='Step'>" +
+           (result.step < 0 ? "" : std::to_string(result.step)) + "</td><td data-label='Outcome'>" +
            drawing::escaped(result.outcome) + "</td>";
   }
 
-  [[nodiscard]] static std::string kinds_table(const Candidate& candidate) {
-    std::string html =
-        "<table><tr><th class='num'>Failed runs</th><th></th><th class='num'>Last step</th>"
-        "<th>Its outcome</th><th>Ending</th><th>Why, in the first of them</th></tr>\n";
-    for (const FailureKind& kind : kinds_of_failure(candidate)) {
-      const TrialResult& result = kind.first->result;
-      html += "<tr>" + number_cell(std::to_string(kind.count)) + class_cell(result) +
-              step_cells(result) + "<td>" + drawing::escaped(result.ending) + "</td><td>" +
-              drawing::escaped(result.reason) + "</td></tr>\n";
+  /// A button for each run that can be replayed.
+  [[nodiscard]] std::string replays(std::size_t i, const FailureKind& kind) const {
+    std::string html;
+    for (const Run* run : kind.examples) {
+      const std::size_t number = run->trial.number;
+      if (evaluation_.candidates[i].recordings.count(number) == 0) continue;
+      html += format(
+          "<button type='button' class='jump' data-plan='%zu' data-run='%zu' "
+          "title='Replay run %zu'>run %zu</button> ",
+          i, number, number, number);
     }
-    return html + "</table>\n";
+    return html;
   }
 
-  [[nodiscard]] std::string failures_table(const Candidate& candidate) const {
+  [[nodiscard]] std::string kinds_table(std::size_t i) const {
+    std::string html =
+        "<div class='wide'><table class='moves'><thead><tr><th class='num'>Failed runs</th>"
+        "<th>How</th><th class='num'>Last step</th><th>Its outcome</th><th>Ending</th>"
+        "<th>Why, in the first of them</th><th>Replay</th></tr></thead>\n<tbody>\n";
+    for (const FailureKind& kind : kinds_of_failure(evaluation_.candidates[i])) {
+      const TrialResult& result = kind.first().result;
+      html += "<tr><th scope='row' class='num'>" + std::to_string(kind.count) +
+              (kind.count == 1 ? " run</th>" : " runs</th>") + class_cell(result) +
+              step_cells(result) + "<td data-label='Ending'>" + drawing::escaped(result.ending) +
+              "</td><td data-label='Why'>" + drawing::escaped(result.reason) +
+              "</td><td data-label='Replay'>" + replays(i, kind) + "</td></tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+  }
+
+  /// Kinds of failure, then each run of them with the command that makes it again.
+  [[nodiscard]] std::string failures_part(std::size_t i) const {
+    const Candidate& candidate = evaluation_.candidates[i];
     const std::vector<const Run*> failed = failures(candidate);
     if (failed.empty()) return "<p><b>No run failed.</b></p>\n";
-    std::string html = kinds_table(candidate) + "<details" +
-                       std::string(failed.size() <= 20 ? " open" : "") + "><summary>" +
-                       std::to_string(failed.size()) + (failed.size() == 1 ? " run" : " runs") +
-                       " that failed</summary>\n<table><tr><th class='num'>Run</th>"
-                       "<th class='num'>&sigma;</th><th></th><th class='num'>Step</th>"
-                       "<th>Outcome</th><th>Why, and how to see it again</th></tr>\n";
-    for (const Run* run : failed) {
-      const TrialResult& result = run->result;
-      html += "<tr>" + number_cell(std::to_string(run->trial.number)) +
-              number_cell(format("%.2f", run->trial.distance)) + class_cell(result) +
-              step_cells(result) + "<td>" + drawing::escaped(result.reason) + "<br><code>" +
+    const std::size_t listed =
+        std::min(failed.size(), kFailuresListed / evaluation_.candidates.size());
+    std::string html = kinds_table(i) + "<details><summary>" + std::to_string(failed.size()) +
+                       (failed.size() == 1 ? " run" : " runs") +
+                       " that failed</summary>\n<div class='wide'><table class='moves'><thead><tr>"
+                       "<th class='num'>Run</th><th class='num'>&sigma;</th><th>How</th>"
+                       "<th class='num'>Step</th><th>Outcome</th><th>Why, and how to see it again"
+                       "</th></tr></thead>\n<tbody>\n";
+    for (std::size_t k = 0; k < listed; ++k) {
+      const Run* run = failed[k];
+      html += "<tr><th scope='row' class='num'>" + std::to_string(run->trial.number) + "</th>" +
+              format("<td class='num' data-label='&sigma;'>%.2f</td>", run->trial.distance) +
+              class_cell(run->result) + step_cells(run->result) + "<td>" +
+              drawing::escaped(run->result.reason) + "<br><code>" +
               drawing::escaped(replay_command(evaluation_, candidate, run->trial.number)) +
               "</code></td></tr>\n";
     }
-    return html + "</table></details>\n";
+    html += "</tbody></table></div>\n";
+    if (listed < failed.size()) {
+      html += format("<p class='note'>The first %zu; --json has all.</p>\n", listed);
+    }
+    return html + "</details>\n";
   }
 
   const Evaluation& evaluation_;
   const Task& task_;
   std::vector<Summary> summaries_;
+  std::vector<Candidate> samples_;  ///< a plan each
 };
 
 }  // namespace

@@ -78,13 +78,13 @@ Json json_of(const std::vector<Bins>& by, const Candidate& candidate) {
 Json failures_json(const Candidate& candidate) {
   Json kinds = Json::array();
   for (const FailureKind& kind : kinds_of_failure(candidate)) {
-    const TrialResult& result = kind.first->result;
+    const TrialResult& result = kind.first().result;
     kinds.push_back({{"class", to_string(classify(result))},
                      {"ending", result.ending},
                      {"step", result.step},
                      {"outcome", result.outcome},
                      {"runs", kind.count},
-                     {"first_run", kind.first->trial.number},
+                     {"first_run", kind.first().trial.number},
                      {"first_reason", result.reason}});
   }
   return kinds;

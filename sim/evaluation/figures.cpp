@@ -47,8 +47,10 @@ Plot plot_of(const Extent& extent, const drawing::View& view, int width_px) {
   return Plot::to_scale(width_px, width_px, axis_of(extent, view, 0), axis_of(extent, view, 1));
 }
 
+std::string side_of(const drawing::View& view) { return std::string(view.title) + ": "; }
+
 std::string title_of(const Run& run) {
-  return format("run %zu, %.2f sigma: ", run.trial.number, run.trial.distance) + run.result.reason;
+  return format("run %zu, %.2f sigma: ", run.trial.number, run.trial.distance) + run.result.ending;
 }
 
 /// Seen from the environment it is the tool that is off.
@@ -154,7 +156,7 @@ std::string curve(const Bins& bins, const std::vector<Rate>& rates) {
   plot.lines(steps, "stroke='#1f6eb4' stroke-opacity='.35' stroke-width='2'");
   plot.lines(spans, "stroke='#1f6eb4' stroke-width='2'");
   plot.dots(rates_at, 8.0, kSucceededColour);
-  return plot.svg();
+  return plot.svg("Success over " + bins.quantity);
 }
 
 std::string map(const std::vector<Bins>& by, const std::vector<std::vector<Rate>>& rates) {
@@ -175,7 +177,7 @@ std::string map(const std::vector<Bins>& by, const std::vector<std::vector<Rate>
                 dark ? "text-anchor='middle' dy='4' fill='#fff'" : "text-anchor='middle' dy='4'");
     }
   }
-  return plot.svg();
+  return plot.svg("Success over " + by[0].quantity + " and " + by[1].quantity);
 }
 
 /// The standard deviations that the plan holds for, or the bounds. @param sigma mm
@@ -225,7 +227,12 @@ std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candid
     const auto ended = ended_at(task, run, view);
     if (!ended) continue;
     began.push_back(view.mm(began_at(evaluation.task, candidate, run)));
-    lines[static_cast<std::size_t>(classify(run.result))].emplace_back(began.back(), *ended);
+    Point from = began.back();
+    for (const Vector3& reached_m : run.result.path_m) {
+      const Point to = view.mm(reached_m);
+      lines[static_cast<std::size_t>(classify(run.result))].emplace_back(from, to);
+      from = to;
+    }
   }
   const double opacity =
       std::clamp(20.0 / static_cast<double>(candidate.runs.size() + 1), 0.06, 0.6);
@@ -238,7 +245,7 @@ std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candid
   }
   plot.dots(began, 3.0, "#444");
   mark(plot, candidate, 6.0, [&](const Run& run) { return ended_at(task, run, view); });
-  return plot.svg();
+  return plot.svg(side_of(view) + "where each run went");
 }
 
 std::string figure_of_draws(const Evaluation& evaluation, const Candidate& candidate,
@@ -255,7 +262,7 @@ std::string figure_of_draws(const Evaluation& evaluation, const Candidate& candi
   mark_reach(plot, evaluation.task, sigma);
   mark(plot, candidate, 5.0, at);
   plot.dots({Point::Zero()}, 8.0, kGoalColour);
-  return plot.svg();
+  return plot.svg(side_of(view) + "where the environment stood in each run");
 }
 
 std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candidate,
@@ -273,7 +280,7 @@ std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candid
     if (!run.result.error) return std::nullopt;
     return view.mm(run.result.error->head<3>());
   });
-  return plot.svg();
+  return plot.svg(side_of(view) + "where the part ended about its goal");
 }
 
 std::string figure_of_errors(const Evaluation& evaluation, const Candidate& candidate) {
@@ -311,7 +318,7 @@ std::string figure_of_errors(const Evaluation& evaluation, const Candidate& cand
   plot.line({tolerance, 0.0}, {tolerance, 1.08 * highest},
             "stroke='#2a7f3f' stroke-width='1.5' stroke-dasharray='5 4'");
   plot.text({tolerance + 0.06, 1.0 * highest}, "tolerance", "fill='#2a7f3f'");
-  return plot.svg();
+  return plot.svg("How many runs ended how far from the goal");
 }
 
 std::string figure_of_breakdown(const Evaluation& evaluation, const Candidate& candidate) {
@@ -323,7 +330,8 @@ std::string rate_bar(const Rate& rate) {
   constexpr double kWidth_px = 120.0;
   const Interval interval = rate.interval();
   return format(
-      "<svg width='%.0f' height='16'><rect width='%.0f' height='16' fill='#eee'/>"
+      "<svg width='%.0f' height='16' aria-hidden='true'><rect width='%.0f' height='16' "
+      "fill='#eee'/>"
       "<rect width='%.1f' height='16' fill='%s'/>"
       "<path d='M%.1f 8H%.1fM%.1f 3v10M%.1f 3v10' stroke='#111' stroke-width='1.5'/></svg>",
       kWidth_px, kWidth_px, kWidth_px * rate.value(), "#8fbbe0", kWidth_px * interval.low,

@@ -20,7 +20,8 @@ inline constexpr const char* kFigureStyle =
     "svg text{font:12px system-ui,sans-serif}svg .label{font-size:13px;fill:#444}"
     ".ground{fill:#fff}.frame{fill:none;stroke:#999}.tick{stroke:#999}";
 
-/// Where each run began and ended, seen from the environment as it really stood.
+/// The way of each run from its beginning, step by step, seen from the environment as it really
+/// stood.
 [[nodiscard]] std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candidate,
                                          const drawing::View& view);
 /// Where the environment stood in each run, about where it was said to stand.

@@ -72,10 +72,13 @@ void Plot::line(const Point& from, const Point& to, std::string_view style) {
 void Plot::lines(const std::vector<std::pair<Point, Point>>& lines, std::string_view style) {
   if (lines.empty()) return;
   marks_ += "<path fill='none' d='";
+  const Point* last = nullptr;
   for (const auto& [from, to] : lines) {
     const Point a = px(from);
     const Point b = px(to);
-    marks_ += format("M%.1f %.1fL%.1f %.1f", a.x(), a.y(), b.x(), b.y());
+    if (last == nullptr || *last != from) marks_ += format("M%.1f %.1f", a.x(), a.y());
+    marks_ += format("L%.1f %.1f", b.x(), b.y());
+    last = &to;
   }
   marks_ += "' " + std::string(style) + "/>\n";
 }
@@ -165,14 +168,14 @@ std::string Plot::ticks() const {
   return svg;
 }
 
-std::string Plot::svg() const {
+std::string Plot::svg(const std::string& title) const {
   const double width = kLeft_px + size_px_.x() + kRight_px;
   const double height = kTop_px + size_px_.y() + kBottom_px;
   const std::string frame = format("x='%.1f' y='%.1f' width='%.1f' height='%.1f'", kLeft_px,
                                    kTop_px, size_px_.x(), size_px_.y());
-  return format("<svg width='%.0f' height='%.0f' viewBox='0 0 %.1f %.1f'>\n", width, height, width,
-                height) +
-         "<rect class='ground' " + frame + "/>\n" +
+  return format("<svg width='%.0f' height='%.0f' viewBox='0 0 %.1f %.1f' role='img'>\n", width,
+                height, width, height) +
+         "<title>" + drawing::escaped(title) + "</title>\n<rect class='ground' " + frame + "/>\n" +
          format(
              "<svg x='%.1f' y='%.1f' width='%.1f' height='%.1f' viewBox='%.1f %.1f %.1f %.1f'>\n",
              kLeft_px, kTop_px, size_px_.x(), size_px_.y(), kLeft_px, kTop_px, size_px_.x(),

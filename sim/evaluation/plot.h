@@ -45,8 +45,8 @@ class Plot {
                  std::string_view title = {});
   void text(const Point& at, std::string_view text, std::string_view style);
 
-  /// Everything with frame, ticks and labels.
-  [[nodiscard]] std::string svg() const;
+  /// Everything with frame, ticks and labels. @param title what it shows, for who cannot see it
+  [[nodiscard]] std::string svg(const std::string& title) const;
 
  private:
   Plot(Axis right, Axis up, const Point& scale);

@@ -16,6 +16,16 @@ Vector6 axes_of(const Json& json) {
   return value;
 }
 
+Json path_json(const std::vector<Vector3>& path_m) {
+  Json json = Json::array();
+  for (const Vector3& p : path_m) json.push_back({p.x(), p.y(), p.z()});
+  return json;
+}
+
+Vector3 point_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
 }  // namespace
 
 std::string run_line(const std::string& plan, const Run& run, bool with_world) {
@@ -37,6 +47,7 @@ std::string run_line(const std::string& plan, const Run& run, bool with_world) {
   json["contact_force_N_max"] = result.contact_force_N_max;
   json["error"] = result.error ? by_axis(*result.error) : Json();
   json["error_norm_m"] = result.error ? Json(result.error->head<3>().norm()) : Json();
+  json["path"] = path_json(result.path_m);
   json["distance"] = trial.distance;
   json["offset"] = by_axis(trial.offset);
   if (with_world) json["world"] = world_json(trial.world);
@@ -62,6 +73,7 @@ std::optional<RunRecord> parse_run_line(const std::string& line) {
     result.contact_force_N_max = json.at("contact_force_N_max").get<double>();
     const Json& error = json.at("error");
     if (error.size() == 6) result.error = axes_of(error);
+    for (const Json& point : json.at("path")) result.path_m.push_back(point_of(point));
     return record;
   } catch (const Json::exception&) {
     return std::nullopt;

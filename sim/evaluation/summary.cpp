@@ -143,18 +143,36 @@ std::vector<FailureKind> kinds_of_failure(const Candidate& candidate) {
   };
   for (const Run* run : failures(candidate)) {
     const auto alike = std::find_if(kinds.begin(), kinds.end(), [&](const FailureKind& kind) {
-      return key(*kind.first) == key(*run);
+      return key(kind.first()) == key(*run);
     });
     if (alike == kinds.end()) {
-      kinds.push_back({run, 1});
-    } else {
-      ++alike->count;
+      kinds.push_back({{run}, 1});
+      continue;
     }
+    ++alike->count;
+    if (alike->examples.size() < FailureKind::kExamplesMax) alike->examples.push_back(run);
   }
   std::stable_sort(kinds.begin(), kinds.end(), [](const FailureKind& a, const FailureKind& b) {
-    return std::pair(a.first->result.done, a.count) > std::pair(b.first->result.done, b.count);
+    return std::pair(a.first().result.done, a.count) > std::pair(b.first().result.done, b.count);
   });
   return kinds;
+}
+
+std::vector<const Run*> examples(const Candidate& candidate, std::size_t most) {
+  std::vector<const Run*> runs;
+  for (const auto& [number, run] : candidate.runs) {
+    if (classify(run.result) != TrialClass::kSucceeded) continue;
+    runs.push_back(&run);
+    break;
+  }
+  const std::vector<FailureKind> kinds = kinds_of_failure(candidate);
+  for (std::size_t i = 0; i < FailureKind::kExamplesMax; ++i) {
+    for (const FailureKind& kind : kinds) {
+      const bool began = kind.first().result.ending != kNoWorld;
+      if (began && i < kind.examples.size() && runs.size() < most) runs.push_back(kind.examples[i]);
+    }
+  }
+  return runs;
 }
 
 std::string shortfall(const Evaluation& evaluation, double min_success) {

@@ -74,8 +74,11 @@ struct Summary {
 
 /// Runs that failed alike.
 struct FailureKind {
-  const Run* first = nullptr;  ///< by number
+  static constexpr std::size_t kExamplesMax = 3;
+  std::vector<const Run*> examples;  ///< the first by number
   std::size_t count = 0;
+
+  [[nodiscard]] const Run& first() const { return *examples.front(); }
 };
 /// Alike in class, ending, step and outcome. Done but wrong before stopped, then the most frequent.
 [[nodiscard]] std::vector<FailureKind> kinds_of_failure(const Candidate& candidate);
@@ -83,6 +86,10 @@ struct FailureKind {
 /// One line that names every plan whose runs succeeded more rarely than that, and how often they
 /// did; empty where none did. @param min_success proportion, 0 to 1
 [[nodiscard]] std::string shortfall(const Evaluation& evaluation, double min_success);
+
+/// What is worth to be seen again: the first examples of every kind of failure that began, those
+/// of all kinds in turn, and the first run that succeeded. At most `most` of them.
+[[nodiscard]] std::vector<const Run*> examples(const Candidate& candidate, std::size_t most);
 
 /// The shell command that makes a run again.
 [[nodiscard]] std::string replay_command(const Evaluation& evaluation, const Candidate& candidate,

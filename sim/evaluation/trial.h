@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "shared/experiment/world_ranges.h"
 #include "shared/task/task.h"
@@ -36,6 +37,9 @@ struct TrialResult {
   // From the simulator's truth; unset where there was no run.
   std::optional<Vector6> error;  ///< from the goal to the tool, in the axes of the real environment
   double contact_force_N_max = 0.0;  ///< at any instant
+  /// Where the tool was as the plan began, after each step, and at the end, um exact: m, in the
+  /// frame of the environment as it really stands. The end alone where no plan began.
+  std::vector<Vector3> path_m;
 };
 
 /// The drawn world cannot be: the part stands in the environment before anything moves.

@@ -1,9 +1,11 @@
 #include "sim/evaluation_chain/trial_chain.h"
 
 #include <cstdio>
+#include <utility>
 
 #include "shared/base/text.h"
 #include "shared/task/inserted.h"
+#include "shared/task/touched.h"
 
 namespace tenon::sim {
 namespace {
@@ -18,6 +20,12 @@ VirtualCell::Options world_of(const Candidate& candidate, const JointVector& joi
   options.joints = joints;
   return options;
 }
+
+const executor::CycleRecord& last_cycle(const executor::CycleRunner& runner) {
+  return runner.black_box().at(runner.black_box().size() - 1);
+}
+
+Vector3 to_um(const Vector3& position_m) { return (1e6 * position_m).array().round() / 1e6; }
 
 }  // namespace
 
@@ -34,12 +42,37 @@ TrialChain::TrialChain(const PreparedPlan& prepared, const Trial& trial,
             {.cycle_ns = std::int64_t{1000} * cell_.robot.cycle_us,
              .feedback_deadline = loop.feedback_deadline}) {}
 
-void TrialChain::run() {
+void TrialChain::run(Recording* recording) {
   constexpr std::int64_t kCyclesMax = 1'000'000;
   if (!time_.prepare()) return;
   while (time_.statistics().cycles < kCyclesMax && time_.cycle(runner_)) {
-    plan_ran_ = plan_ran_ || controller_.state() == executor::State::kRunning;
+    follow();
+    if (recording != nullptr && plan_ran_) record(*recording);
   }
+}
+
+void TrialChain::follow() {
+  if (!plan_ran_ && controller_.state() == executor::State::kRunning) {
+    plan_ran_ = true;
+    began_ns_ = last_cycle(runner_).motion_ns;
+    path_m_.push_back(to_um(virtual_cell_.truth().tool.position_m));
+  }
+  if (plan_ran_ && path_m_.size() <= controller_.runner().report_count()) {
+    path_m_.push_back(to_um(virtual_cell_.truth().tool.position_m));
+  }
+}
+
+void TrialChain::record(Recording& recording) const {
+  const executor::CycleRecord& cycle = last_cycle(runner_);
+  if (cycle.moving) recording.feel(executor::vector_of(cycle.wrench));
+  Moment moment;
+  moment.time_ns = cycle.motion_ns - began_ns_;
+  if (!recording.is_due(moment.time_ns)) return;
+  const Truth truth = virtual_cell_.truth();
+  moment.tool = truth.tool;
+  moment.step = static_cast<int>(controller_.runner().step());
+  moment.touching = touched_pieces(task_, truth.touching);
+  recording.add(std::move(moment));
 }
 
 TrialResult TrialChain::result() const {
@@ -57,6 +90,8 @@ TrialResult TrialChain::result() const {
     result.outcome = to_string(run.steps.back().result.outcome);
   }
   result.error = truth.error;
+  result.path_m = path_m_;
+  result.path_m.push_back(to_um(truth.tool.position_m));
   result.contact_force_N_max = truth.contact_force_N_max;
   if (result.done && !result.at_goal) {
     result.reason += format("; the part is %.2f mm from its goal (%.2f allowed) and %sinserted",

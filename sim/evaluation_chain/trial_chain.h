@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "executor/dry_run/dry_run.h"
 #include "executor/loop/controller.h"
@@ -17,6 +18,7 @@
 #include "sim/cell/lockstep/virtual_link.h"
 #include "sim/cell/virtual_arm/virtual_cell.h"
 #include "sim/evaluation/evaluation.h"
+#include "sim/evaluation/recording.h"
 #include "sim/evaluation/trial.h"
 
 namespace tenon::sim {
@@ -37,8 +39,8 @@ class TrialChain {
   TrialChain(const PreparedPlan& prepared, const Trial& trial,
              const executor::CycleRunner::Parameters& loop);
 
-  /// From bringing the arm up to the run's end. Once.
-  void run();
+  /// From bringing the arm up to the run's end. Once. @param recording null: none is made
+  void run(Recording* recording = nullptr);
   /// What came of it, by the executor's word and by the truth.
   [[nodiscard]] TrialResult result() const;
   /// Prints the steps, the ending and the truth.
@@ -47,6 +49,8 @@ class TrialChain {
 
  private:
   [[nodiscard]] executor::RunResult told() const;
+  void follow();
+  void record(Recording& recording) const;
 
   const Cell& cell_;
   const Task& task_;
@@ -57,6 +61,8 @@ class TrialChain {
   VirtualCell virtual_cell_;
   Lockstep time_;
   bool plan_ran_ = false;
+  std::int64_t began_ns_ = 0;    ///< the plan, in motion time
+  std::vector<Vector3> path_m_;  ///< up to the last step that has ended
 };
 
 }  // namespace tenon::sim

@@ -15,10 +15,11 @@ namespace {
 /// What is kept of the cycles of a run that is told.
 constexpr double kToldCycles_s = 60.0;
 
-/// @param look called with the chain once its run has ended
+/// @param recording null: none is made  @param look called with the chain once its run has ended
 template <typename Look>
 TrialResult execute(const PreparedPlan& prepared, const Trial& trial,
-                    const executor::CycleRunner::Parameters& loop, const Look& look) {
+                    const executor::CycleRunner::Parameters& loop, Recording* recording,
+                    const Look& look) {
   std::optional<TrialChain> chain;
   try {
     chain.emplace(prepared, trial, loop);
@@ -28,7 +29,7 @@ TrialResult execute(const PreparedPlan& prepared, const Trial& trial,
     result.reason = error.what();
     return result;
   }
-  chain->run();
+  chain->run(recording);
   look(*chain);
   return chain->result();
 }
@@ -49,14 +50,18 @@ TrialRunner::TrialRunner(const Cell& cell, const Task& task, const Candidate& ca
 }
 
 TrialResult TrialRunner::run(const Trial& trial) const {
-  return execute(*prepared_, trial, {}, [](const TrialChain&) {});
+  return execute(*prepared_, trial, {}, nullptr, [](const TrialChain&) {});
+}
+
+TrialResult TrialRunner::record(const Trial& trial, Recording& recording) const {
+  return execute(*prepared_, trial, {}, &recording, [](const TrialChain&) {});
 }
 
 TrialResult TrialRunner::tell(const Trial& trial, const std::string& black_box,
                               RecordReport& written) const {
   executor::CycleRunner::Parameters loop;
   loop.black_box_s = kToldCycles_s;
-  return execute(*prepared_, trial, loop, [&](const TrialChain& chain) {
+  return execute(*prepared_, trial, loop, nullptr, [&](const TrialChain& chain) {
     chain.print();
     if (!black_box.empty()) written = chain.black_box().write_csv(black_box);
   });

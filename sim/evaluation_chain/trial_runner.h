@@ -8,6 +8,7 @@
 #include "shared/system/record_file.h"
 #include "shared/task/task.h"
 #include "sim/evaluation/evaluation.h"
+#include "sim/evaluation/recording.h"
 #include "sim/evaluation/trial.h"
 
 namespace tenon::sim {
@@ -22,6 +23,8 @@ class TrialRunner {
   TrialRunner(const Cell& cell, const Task& task, const Candidate& candidate);
 
   [[nodiscard]] TrialResult run(const Trial& trial) const;
+  /// The same run, kept as it goes.
+  TrialResult record(const Trial& trial, Recording& recording) const;
   /// The same, and prints what happened step by step.
   /// @param black_box CSV file for the last minute of cycles; empty: none
   /// @param written what became of that file

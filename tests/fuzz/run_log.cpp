@@ -28,7 +28,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const std::string& line : sim::read_run_log(file, kIdentity)) {
       ++runs;
       const std::optional<sim::RunRecord> record = sim::parse_run_line(line);
-      if (!record || !record->result.error) continue;
+      if (!record) continue;
+      for (const Vector3& point_m : record->result.path_m) {
+        fuzz::must(point_m.allFinite(), "a path is made of numbers");
+      }
+      if (!record->result.error) continue;
       fuzz::must(record->result.error->allFinite(), "an error is made of numbers");
     }
   });

@@ -44,14 +44,16 @@ def write_page(arguments, folder, plan, task, cell):
     return file
 
 
-def look(browser, file, webgl, failures, pictures):
-    """Each width and colour: nothing said, nothing asked for, nothing wider than the window."""
+def look_at(browser, file, fragment, webgl, failures, pictures):
+    """Each width and colour: nothing said, nothing asked for, nothing wider than the window, nothing unnamed.
+
+    @param fragment of the address: where the page is to open"""
     for width in (1400, 390):
         for dark in (False, True):
             name = f"{file.stem}_{width}_{'dark' if dark else 'light'}_{'webgl' if webgl else 'svg'}"
-            browser.open(file, width=width, dark=dark, fragment="#step=1.5")
+            browser.open(file, width=width, dark=dark, fragment=fragment)
             browser.wait_for(f"{ROOT}.ready === 'true'")
-            failures.check(browser.evaluate(f"{ROOT}.step") == "1", f"{name}: does not open at the step asked for")
+            failures.check(not fragment or browser.evaluate(f"{ROOT}.step") == "1", f"{name}: does not open at {fragment}")
             wide = browser.evaluate("document.documentElement.scrollWidth")
             failures.check(wide <= width, f"{name}: {wide} px wide")
             renderer = browser.evaluate("document.querySelector('.canvas').dataset.renderer")
@@ -114,7 +116,7 @@ def main():
         for webgl in (True, False):
             with Browser(webgl) as browser:
                 for file in files:
-                    look(browser, file, webgl, failures, arguments.pictures)
+                    look_at(browser, file, "#step=1.5", webgl, failures, arguments.pictures)
                 play(browser, files[0], failures)
     print(f"{len(files)} pages, {failures.count} failures")
     return 1 if failures.count else 0

@@ -10,6 +10,8 @@
 #include "shared/base/random.h"
 #include "shared/drawing/html.h"
 #include "shared/drawing/prism.h"
+#include "shared/drawing/scene_json.h"
+#include "shared/drawing/step_words.h"
 #include "shared/drawing/view.h"
 
 namespace tenon::drawing {
@@ -106,11 +108,21 @@ TEST(DrawingHtml, TextCannotBecomeMarkup) {
   EXPECT_EQ(escaped("&lt;"), "&amp;lt;") << "once more, not twice the same";
 }
 
-TEST(DrawingHtml, ADocumentHoldsItsPartsInTheirOrder) {
-  EXPECT_EQ(document({"window", "p{}", "head", "<p>text</p>\n"}),
-            "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>window</title>\n"
-            "<style>p{}</style></head>\n<body>\n<h1>head</h1>\n<p>text</p>\n</body></html>\n");
+TEST(DrawingHtml, AFigureHoldsItsPictureThenItsCaption) {
   EXPECT_EQ(figure("<svg/>", "what"), "<figure><svg/><figcaption>what</figcaption></figure>\n");
+}
+
+TEST(DrawingStepWords, OnlyAxesThatWouldShowAreNamed) {
+  Step step;
+  step.displacement << 0.1004, -4e-4, -0.02, 0.0, 8e-4, -0.0349066;
+  EXPECT_EQ(displacement_text(step), "x +100 mm, z -20 mm, rz -2.0\u00b0");
+  EXPECT_EQ(displacement_text(Step{}), "");
+}
+
+TEST(DrawingScene, ViewsAreThoseOfTheCoordinates) {
+  EXPECT_EQ(views_json(0b000011), R"([{"right":0,"up":1,"along":2,"title":"Seen from above"}])");
+  EXPECT_EQ(views_json(0b000101),
+            R"([{"right":0,"up":2,"along":1,"title":"Seen from the side, along y"}])");
 }
 
 TEST(DrawingHtml, PointsAreRoundedToTheDecimalsAskedFor) {

@@ -30,6 +30,7 @@ Run run_with_awkward_numbers() {
   run.result.steps = 4;
   run.result.duration_s = 0.1 + 0.2;
   run.result.error = Vector6(1e-3 / 3.0 * Vector6::Ones());
+  run.result.path_m = {{0.1 + 0.2, -1.0 / 3.0, 0.0}, {1e-6, 2.0, -3.25}};
   run.result.contact_force_N_max = 21.300000000000001;
   return run;
 }
@@ -44,6 +45,7 @@ TEST(EvaluationRunLine, ComesBackBitForBit) {
   EXPECT_EQ(record->number, 17U);
   EXPECT_EQ(record->seed, 9007199254740991U);
   EXPECT_EQ(*record->result.error, *run.result.error);
+  EXPECT_EQ(record->result.path_m, run.result.path_m);
   EXPECT_EQ(run_line("abc", {run.trial, record->result}, true), line);
 }
 

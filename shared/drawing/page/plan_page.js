@@ -3,7 +3,7 @@
 class PlanPage {
   constructor(data) {
     this.data = data;
-    this.options = { particles: true, paths: true, draws: true, cut: this.hidesGoal() };
+    this.options = { particles: true, paths: true, draws: true, cut: hidesGoal(data) };
     this.chains = data.draws.length ? data.draws : data.particles;
     this.focus = this.chains[0];
     this.buildStage(document.querySelector("[data-part=stage]"));
@@ -18,93 +18,37 @@ class PlanPage {
     this.begin();
   }
 
-  // Whether the part ends so deep between other things that one has to look inside.
-  hidesGoal() {
-    const tip = this.data.goal;
-    let highest = -Infinity;
-    for (const shape of this.data.scene.environment) {
-      const z = shape.points_m.filter((_, i) => i % 3 === 2);
-      highest = Math.max(highest, ...z);
-    }
-    return this.data.coordinates.includes(2) && tip[2] < highest - 1e-3;
-  }
-
   show(time) {
     this.player.jump(time);
-    const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.stage.scrollIntoView({ behavior: calm ? "auto" : "smooth", block: "nearest" });
+    this.stage.comeIntoView();
   }
 
   begin() {
     const asked = /step=([\d.]+)/.exec(location.hash);
-    const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.player.jump(asked ? Number(asked[1]) : 0);
-    if (!asked && !calm) this.player.play();
+    if (!asked && !wantsNoMotion()) this.player.play();
     document.documentElement.dataset.ready = "true";
   }
 
-  buildStage(stage) {
-    this.stage = stage;
-    const canvas = element("div", { class: "canvas" });
-    this.player = new Player(this.data.steps.length, (time) => this.update(time));
-    this.now = element("aside", { class: "now", "aria-label": "What happens now" });
-    stage.append(
-      element(
-        "div",
-        { class: "picture" },
-        canvas,
-        this.buildViews(),
-        this.player.controls,
-        this.buildLegend(),
-      ),
-      this.now,
-    );
-    this.picture = new ScenePicture(canvas, this.data);
-    this.fillViews();
+  buildStage(host) {
+    const count = this.data.steps.length;
+    const stops = Array.from({ length: count + 1 }, (_, i) => i);
+    this.player = new Player("plan", (time) => this.update(time));
+    this.player.setSpan({
+      stops,
+      perSecond: 1 / SECONDS_PER_MOVE,
+      nameOf: (time) => (time >= count ? "end" : "step " + Math.floor(time)),
+    });
+    this.stage = new Stage(host, this.data, [this.player.controls], this.buildLegend());
+    this.picture = this.stage.picture;
+    this.now = this.stage.now;
     this.buildNow();
-  }
-
-  buildViews() {
-    this.viewBar = element("div", { class: "views", role: "group", "aria-label": "Views" });
-    return this.viewBar;
-  }
-
-  fillViews() {
-    for (const view of this.picture.views) {
-      const button = element("button", { type: "button" }, view.title);
-      button.addEventListener("click", () => {
-        this.picture.setView(view);
-        this.markView();
-      });
-      this.viewBar.append(button);
-    }
-    this.markView();
-  }
-
-  markView() {
-    [...this.viewBar.children].forEach((button, i) => {
-      button.setAttribute("aria-pressed", this.picture.views[i] === this.picture.view);
-    });
-  }
-
-  check(name, colour, text) {
-    const box = element("input", { type: "checkbox" });
-    box.checked = this.options[name];
-    box.addEventListener("change", () => {
-      this.options[name] = box.checked;
-      this.update(this.player.time);
-    });
-    return element(
-      "label",
-      { class: "key" },
-      box,
-      element("i", { style: `background:var(--${colour})` }),
-      text,
-    );
   }
 
   buildLegend() {
     const count = this.data.particles.length;
+    const box = (name, colour, text) =>
+      optionBox(this.options, name, colour, text, () => this.update(this.player.time));
     const random = element("button", { type: "button", class: "random", title: "Another random start (R)" });
     random.append("Another start");
     random.addEventListener("click", () => this.another());
@@ -112,15 +56,15 @@ class PlanPage {
     const legend = element(
       "div",
       { class: "legend" },
-      element("span", { class: "key" }, element("i", { style: "background:var(--part)" }), this.frontText),
+      keyOf("part", this.frontText),
       this.data.draws.length ? random : null,
-      this.check("particles", "particle", count + (count === 1 ? " particle" : " particles")),
-      this.check("paths", "particle", "paths"),
-      this.data.draws.length ? this.check("draws", "muted", this.data.draws.length + " random starts") : null,
-      element("span", { class: "key" }, element("i", { style: "background:var(--goal)" }), "goal"),
-      element("span", { class: "key" }, element("i", { style: "background:var(--contact)" }), "touched"),
+      box("particles", "particle", count + (count === 1 ? " particle" : " particles")),
+      box("paths", "particle", "paths"),
+      this.data.draws.length ? box("draws", "muted", this.data.draws.length + " random starts") : null,
+      keyOf("goal", "goal"),
+      keyOf("contact", "touched"),
     );
-    if (hasWebGl()) legend.append(this.check("cut", "environment", "cut open"));
+    if (hasWebGl()) legend.append(box("cut", "environment", "cut open"));
     this.nameFront();
     return legend;
   }
@@ -188,21 +132,20 @@ class PlanPage {
   }
 
   sentences(move, ended) {
-    const line = (label, text) => element("p", {}, element("span", { class: "term" }, label), " ", text);
     if (ended) {
       const good = this.data.draws.filter((chain) => chain.at_goal).length;
-      const particles = line(
+      const particles = termLine(
         "Particles",
         `${this.data.particles.filter((chain) => chain.done).length} of ${this.data.particles.length} done`,
       );
       return this.data.draws.length
-        ? [particles, line("Random starts", `${good} of ${this.data.draws.length} at the goal`)]
+        ? [particles, termLine("Random starts", `${good} of ${this.data.draws.length} at the goal`)]
         : [particles];
     }
     const step = this.data.steps[move];
     const lines = [element("p", { class: "move" }, step.words)];
-    if (step.outcomes) lines.push(line("Ends by", step.outcomes));
-    if (step.touched && step.touched.length) lines.push(line("Touches then", step.touched.join(", ")));
+    if (step.outcomes) lines.push(termLine("Ends by", step.outcomes));
+    if (step.touched && step.touched.length) lines.push(termLine("Touches then", step.touched.join(", ")));
     for (const gain of step.gains || []) {
       const verb = gain.settled ? " becomes certain: " : " becomes more certain: ";
       lines.push(element("p", { class: "gain" }, element("b", {}, AXES[gain.axis]), verb, gain.why));

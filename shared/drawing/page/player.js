@@ -1,4 +1,5 @@
-// Time over the moves of a plan: play, step, scrub, by mouse and keys. Tells its listener of every change.
+// Time over what a page plays: play, step, scrub, by mouse and keys. Tells its listener of every change.
+// Its unit is the page's: moves of a plan, or seconds of a run.
 
 const SECONDS_PER_MOVE = 1.4;
 
@@ -10,14 +11,30 @@ function iconOf(path) {
 }
 
 class Player {
-  constructor(count, listener) {
-    this.count = count;
+  // what: the name of what is played, such as "plan".
+  constructor(what, listener) {
+    this.what = what;
     this.listener = listener;
+    this.end = 0;
     this.time = 0;
     this.playing = false;
     this.speed = 1;
     this.controls = this.buildControls();
+    this.setSpan({ stops: [0], perSecond: 1, nameOf: () => "" });
     document.addEventListener("keydown", (event) => this.onKey(event));
+  }
+
+  // stops: ascending, from 0 to the end, where single steps lead to; perSecond: units in a second of play;
+  // nameOf: a time in words.
+  setSpan({ stops, perSecond, nameOf }) {
+    this.stops = stops;
+    this.end = stops[stops.length - 1];
+    this.perSecond = perSecond;
+    this.nameOf = nameOf;
+    this.range.max = this.end;
+    this.ticks.replaceChildren(
+      ...stops.map((stop) => element("i", { style: `left:${((100 * stop) / (this.end || 1)).toFixed(2)}%` })),
+    );
   }
 
   button(icon, title, action) {
@@ -30,14 +47,13 @@ class Player {
   buildControls() {
     this.playButton = this.button("", "Play", () => this.toggle());
     this.playButton.classList.add("play");
-    this.range = element("input", { type: "range", min: 0, max: this.count, step: 0.01, value: 0 });
-    this.range.setAttribute("aria-label", "Step of the plan");
+    this.range = element("input", { type: "range", min: 0, max: 1, step: 0.01, value: 0 });
+    this.range.setAttribute("aria-label", "Step of the " + this.what);
     this.range.addEventListener("input", () => {
       this.pause();
       this.set(Number(this.range.value));
     });
-    const ticks = element("div", { class: "ticks", "aria-hidden": "true" });
-    for (let i = 0; i <= this.count; ++i) ticks.append(element("i"));
+    this.ticks = element("div", { class: "ticks", "aria-hidden": "true" });
     this.select = element("select", { "aria-label": "Speed of the play" });
     for (const speed of [0.25, 0.5, 1, 2, 4]) {
       this.select.append(element("option", { value: speed }, speed + "×"));
@@ -46,13 +62,13 @@ class Player {
     this.select.addEventListener("change", () => (this.speed = Number(this.select.value)));
     return element(
       "div",
-      { class: "controls", role: "group", "aria-label": "Play the plan" },
+      { class: "controls", role: "group", "aria-label": "Play the " + this.what },
       this.button("M2 2h2v12h-2zM14 2v12l-9 -6z", "To the start (Home)", () => this.jump(0)),
       this.button("M12 2v12l-9 -6z", "One step back (left arrow)", () => this.step(-1)),
       this.playButton,
       this.button("M4 2v12l9 -6z", "One step on (right arrow)", () => this.step(+1)),
-      this.button("M12 2h2v12h-2zM2 2v12l9 -6z", "To the end (End)", () => this.jump(this.count)),
-      element("div", { class: "scrub" }, this.range, ticks),
+      this.button("M12 2h2v12h-2zM2 2v12l9 -6z", "To the end (End)", () => this.jump(this.end)),
+      element("div", { class: "scrub" }, this.range, this.ticks),
       this.select,
     );
   }
@@ -66,7 +82,7 @@ class Player {
       ArrowLeft: () => this.step(-1),
       ArrowRight: () => this.step(+1),
       Home: () => this.jump(0),
-      End: () => this.jump(this.count),
+      End: () => this.jump(this.end),
     };
     if (!(event.key in actions) || (event.key === " " && onButton)) return;
     event.preventDefault();
@@ -74,12 +90,9 @@ class Player {
   }
 
   set(time) {
-    this.time = Math.max(0, Math.min(this.count, time));
+    this.time = Math.max(0, Math.min(this.end, time));
     this.range.value = this.time;
-    this.range.setAttribute(
-      "aria-valuetext",
-      this.time >= this.count ? "end" : "step " + Math.floor(this.time),
-    );
+    this.range.setAttribute("aria-valuetext", this.nameOf(this.time));
     this.listener(this.time, this.playing);
   }
 
@@ -89,7 +102,9 @@ class Player {
   }
 
   step(by) {
-    this.jump(by > 0 ? Math.floor(this.time + 1e-6) + 1 : Math.ceil(this.time - 1e-6) - 1);
+    const after = this.stops.find((stop) => stop > this.time + 1e-6);
+    const before = this.stops.findLast((stop) => stop < this.time - 1e-6);
+    this.jump(by > 0 ? (after ?? this.end) : (before ?? 0));
   }
 
   toggle() {
@@ -98,7 +113,7 @@ class Player {
   }
 
   play() {
-    if (this.time >= this.count) this.set(0);
+    if (this.time >= this.end) this.set(0);
     this.playing = true;
     this.showState();
     let last = null;
@@ -106,8 +121,8 @@ class Player {
       if (!this.playing) return;
       const elapsed = last === null ? 0 : Math.min(now - last, 100);
       last = now;
-      this.set(this.time + ((1e-3 * elapsed) / SECONDS_PER_MOVE) * this.speed);
-      if (this.time >= this.count) this.pause();
+      this.set(this.time + 1e-3 * elapsed * this.perSecond * this.speed);
+      if (this.time >= this.end) this.pause();
       else requestAnimationFrame(frame);
     };
     requestAnimationFrame(frame);

@@ -9,7 +9,17 @@ function element(name, attributes = {}, ...children) {
 
 function colours() {
   const style = getComputedStyle(document.documentElement);
-  const names = ["ink", "muted", "environment", "contact", "part", "particle", "goal", "arrow"];
+  const names = [
+    "ink",
+    "muted",
+    "environment",
+    "contact",
+    "part",
+    "particle",
+    "goal",
+    "arrow",
+    ...TRAIL_CLASSES,
+  ];
   return Object.fromEntries(names.map((name) => [name, style.getPropertyValue("--" + name).trim()]));
 }
 

@@ -2,6 +2,31 @@
 
 const AXES = ["x", "y", "z", "rx", "ry", "rz"];
 
+// Paths of whole runs: {class, points}. A picture draws them anew when it is handed another array.
+const NO_TRAILS = [];
+const TRAIL_CLASSES = ["succeeded", "stopped", "wrong"];
+
+// Ends of lines, pair by pair, about the end of a run: a diamond, a cross or a square, whatever the colours.
+function trailMark(name, end, reach) {
+  const at = (x, y, z) => [end[0] + reach * x, end[1] + reach * y, end[2] + reach * z];
+  const round = (corners) => corners.flatMap((corner, i) => [corner, corners[(i + 1) % corners.length]]);
+  if (name === "stopped") {
+    const corners = [at(1, 1, 1), at(1, -1, 1), at(1, 1, -1), at(1, -1, -1)];
+    return corners.flatMap((corner) => [corner, corner.map((value, i) => 2 * end[i] - value)]);
+  }
+  const far = name === "wrong" ? 1.2 : 0.6;
+  if (name === "wrong") {
+    const square = (z) => [at(far, far, z), at(-far, far, z), at(-far, -far, z), at(far, -far, z)];
+    const low = square(-far);
+    const high = square(far);
+    return [...round(low), ...round(high), ...low.flatMap((corner, i) => [corner, high[i]])];
+  }
+  return [
+    ...round([at(far, 0, 0), at(0, far, 0), at(-far, 0, 0), at(0, -far, 0)]),
+    ...round([at(far, 0, 0), at(0, 0, far), at(-far, 0, 0), at(0, 0, -far)]),
+  ];
+}
+
 function shown(value, axis) {
   return axis < 3 ? 1e3 * value : (180 / Math.PI) * value;
 }
@@ -87,12 +112,14 @@ function stateAt(data, time, focus) {
     time,
     particles: particles.map((place) => place.pose),
     front: front.pose,
+    track: [],
     draws: data.draws.map((chain) => chainAt(chain, time, data.durations).pose),
     mean: meanOf(particles.map((place) => place.pose)),
     spread: spreadAt(data.nodes, time),
     touched,
     flashes,
     arrow,
+    trails: NO_TRAILS,
   };
 }
 
@@ -119,5 +146,6 @@ function boundsOf(data) {
   hold(data.goal);
   hold(data.start);
   for (const chain of data.particles) chain.poses.forEach(hold);
+  for (const point of data.reached || []) grow(point);
   return { points, low, high };
 }

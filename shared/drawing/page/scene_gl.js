@@ -98,6 +98,8 @@ class GlScene {
     }
     this.place(this.goal, this.data.goal);
     this.paths = this.data.particles.map((chain) => this.lineOf(chain.poses.length + 1, m.path));
+    this.track = this.lineOf(0, m.whisker);
+    this.track.renderOrder = 2;
     this.draws = this.pointsOf(this.data.draws.length, m.draws);
     this.tips = this.pointsOf(this.data.particles.length, m.tips);
     this.tips.renderOrder = 3;
@@ -110,8 +112,46 @@ class GlScene {
     this.arrow.add(shaft, head);
     this.arrow.renderOrder = 4;
     this.rings = new T.Group();
+    this.buildTrails();
     this.scene.add(this.environment, ...this.particles, this.front, this.goal, ...this.paths);
-    this.scene.add(this.draws, this.tips, this.whisker, this.arrow, this.rings);
+    this.scene.add(this.draws, this.track, this.tips, this.whisker, this.arrow, this.rings);
+  }
+
+  // Paths of runs and the marks at their ends, by outcome.
+  buildTrails() {
+    const T = TenonLibraries;
+    this.trails = Object.fromEntries(
+      TRAIL_CLASSES.map((name) => {
+        const line = new T.LineBasicMaterial({
+          transparent: true,
+          opacity: name === "succeeded" ? 0.35 : 0.75,
+        });
+        const mark = new T.LineBasicMaterial({ depthTest: false, transparent: true });
+        const pair = [line, mark].map((material) => new T.LineSegments(this.emptyGeometry(0), material));
+        pair[1].renderOrder = 3;
+        for (const object of pair) object.frustumCulled = false;
+        this.scene.add(...pair);
+        return [name, pair];
+      }),
+    );
+  }
+
+  drawTrails(trails) {
+    if (trails === this.shownTrails) return;
+    this.shownTrails = trails;
+    for (const name of TRAIL_CLASSES) {
+      const own = trails.filter((trail) => trail.class === name);
+      const unit = this.size / 130;
+      const ends = own.flatMap((trail) => trailMark(name, trail.points[trail.points.length - 1], unit / 1e3));
+      const parts = own.flatMap((trail) =>
+        trail.points.slice(1).flatMap((point, i) => [trail.points[i], point]),
+      );
+      [parts, ends].forEach((points, i) => {
+        this.trails[name][i].geometry.dispose();
+        this.trails[name][i].geometry = this.emptyGeometry(points.length);
+        this.setPoints(this.trails[name][i], points);
+      });
+    }
   }
 
   emptyGeometry(count) {
@@ -153,6 +193,9 @@ class GlScene {
     m.draws.color.set(palette.muted);
     m.tips.color.set(palette.particle);
     m.arrow.color.set(palette.arrow);
+    for (const name of TRAIL_CLASSES) {
+      for (const object of this.trails[name]) object.material.color.set(palette[name]);
+    }
     this.render();
   }
 
@@ -174,7 +217,12 @@ class GlScene {
       group.visible = options.particles;
       this.place(group, state.particles[i]);
     });
-    this.place(this.front, state.front);
+    this.front.visible = state.front !== null;
+    if (state.front) this.place(this.front, state.front);
+    this.track.geometry.dispose();
+    this.track.geometry = this.emptyGeometry(state.track.length);
+    this.setPoints(this.track, state.track);
+    this.drawTrails(options.paths ? state.trails : NO_TRAILS);
     this.setPoints(this.tips, state.particles);
     this.setPoints(this.draws, state.draws);
     this.draws.visible = options.draws;

@@ -75,8 +75,11 @@ class SvgScene {
         "fill-opacity": 0.35,
       }),
     );
+    this.trails = svgElement("g");
+    this.shownTrails = NO_TRAILS;
     this.moving = svgElement("g");
-    this.svg.replaceChildren(...this.environment.map((entry) => entry.path), ...goal, this.moving);
+    const still = this.environment.map((entry) => entry.path);
+    this.svg.replaceChildren(...still, ...goal, this.trails, this.moving);
   }
 
   part(pose, attributes) {
@@ -118,7 +121,10 @@ class SvgScene {
         elements.push(...this.part(pose, { fill: colour.particle, "fill-opacity": 0.1 }));
       }
     }
-    elements.push(...this.part(state.front, { fill: colour.part, "fill-opacity": 0.55 }));
+    if (state.track.length) {
+      elements.push(this.line(state.track, { stroke: colour.ink, "stroke-width": 0.0035 * unit }));
+    }
+    if (state.front) elements.push(...this.part(state.front, { fill: colour.part, "fill-opacity": 0.55 }));
     const move = Math.floor(state.time);
     if (options.paths) {
       this.data.particles.forEach((chain, i) => {
@@ -137,7 +143,47 @@ class SvgScene {
       };
       elements.push(this.dot(flash.at, 0.012 + 0.04 * flash.age, ring));
     }
+    this.drawTrails(options.paths ? state.trails : NO_TRAILS);
     this.moving.replaceChildren(...elements);
+  }
+
+  // Paths of runs and the marks at their ends, by outcome.
+  drawTrails(trails) {
+    if (trails === this.shownTrails) return;
+    this.shownTrails = trails;
+    const flat = (points, join) =>
+      points
+        .map((point) =>
+          this.at(point)
+            .map((value) => value.toFixed(2))
+            .join(","),
+        )
+        .join(join);
+    const drawn = TRAIL_CLASSES.flatMap((name) => {
+      const own = trails.filter((trail) => trail.class === name);
+      const ends = own.flatMap((trail) =>
+        trailMark(name, trail.points[trail.points.length - 1], 8e-6 * this.size),
+      );
+      const marks = [];
+      for (let i = 0; i < ends.length; i += 2) marks.push("M" + flat(ends.slice(i, i + 2), "L"));
+      const path = (d, width, opacity) =>
+        svgElement("path", {
+          d,
+          fill: "none",
+          stroke: this.palette[name],
+          "stroke-opacity": opacity,
+          "stroke-width": width * this.size,
+        });
+      return [
+        path(
+          own.map((trail) => "M" + flat(trail.points, "L")).join(""),
+          0.0018,
+          name === "succeeded" ? 0.35 : 0.75,
+        ),
+        path(marks.join(""), 0.003, 1),
+      ];
+    });
+    this.trails.replaceChildren(...drawn);
   }
 
   arrowOf(state) {

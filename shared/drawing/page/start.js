@@ -4,4 +4,5 @@
   const data = JSON.parse(document.getElementById("page-data").textContent);
   document.documentElement.classList.add("live");
   if (data.kind === "plan") new PlanPage(data);
+  if (data.kind === "evaluation") new EvaluationPage(data);
 }

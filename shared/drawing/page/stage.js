@@ -1,0 +1,74 @@
+// The scene with its views, the player and a legend under it, and what happens now beside it.
+
+function wantsNoMotion() {
+  return window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
+
+// Whether the part ends so deep between other things that one has to look inside.
+function hidesGoal(data) {
+  let highest = -Infinity;
+  for (const shape of data.scene.environment) {
+    for (let i = 2; i < shape.points_m.length; i += 3) highest = Math.max(highest, shape.points_m[i]);
+  }
+  return data.coordinates.includes(2) && data.goal[2] < highest - 1e-3;
+}
+
+// A box of the legend that turns one of the options on and off.
+function optionBox(options, name, colour, text, changed) {
+  const box = element("input", { type: "checkbox" });
+  box.checked = options[name];
+  box.addEventListener("change", () => {
+    options[name] = box.checked;
+    changed();
+  });
+  return element(
+    "label",
+    { class: "key" },
+    box,
+    element("i", { style: `background:var(--${colour})` }),
+    text,
+  );
+}
+
+function keyOf(colour, ...children) {
+  return element(
+    "span",
+    { class: "key" },
+    element("i", { style: `background:var(--${colour})` }),
+    ...children,
+  );
+}
+
+function termLine(label, text) {
+  return element("p", {}, element("span", { class: "term" }, label), " ", text);
+}
+
+class Stage {
+  constructor(host, data, controls, legend) {
+    this.host = host;
+    const canvas = element("div", { class: "canvas" });
+    this.views = element("div", { class: "views", role: "group", "aria-label": "Views" });
+    this.now = element("aside", { class: "now", "aria-label": "What happens now" });
+    host.append(element("div", { class: "picture" }, canvas, this.views, ...controls, legend), this.now);
+    this.picture = new ScenePicture(canvas, data);
+    for (const view of this.picture.views) {
+      const button = element("button", { type: "button" }, view.title);
+      button.addEventListener("click", () => {
+        this.picture.setView(view);
+        this.markView();
+      });
+      this.views.append(button);
+    }
+    this.markView();
+  }
+
+  markView() {
+    [...this.views.children].forEach((button, i) => {
+      button.setAttribute("aria-pressed", this.picture.views[i] === this.picture.view);
+    });
+  }
+
+  comeIntoView() {
+    this.host.scrollIntoView({ behavior: wantsNoMotion() ? "auto" : "smooth", block: "nearest" });
+  }
+}
