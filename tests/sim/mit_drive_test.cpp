@@ -13,13 +13,13 @@
 namespace tenon::sim {
 namespace {
 
-using Bytes = std::array<std::uint8_t, 8>;
+using FrameBytes = std::array<std::uint8_t, 8>;
 
 constexpr double kCountsPerRad = 65535.0 / 25.0;
-constexpr Bytes kEnableFrame = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC};
-constexpr Bytes kDisableFrame = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD};
-constexpr Bytes kClearFrame = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFB};
-constexpr Bytes kCommandOfOnes = {0x8A, 0x3D, 0x84, 0x40, 0x52, 0x33, 0x38, 0xCC};
+constexpr FrameBytes kEnableFrame = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC};
+constexpr FrameBytes kDisableFrame = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD};
+constexpr FrameBytes kClearFrame = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFB};
+constexpr FrameBytes kCommandOfOnes = {0x8A, 0x3D, 0x84, 0x40, 0x52, 0x33, 0x38, 0xCC};
 constexpr std::int64_t kMs_ns = 1'000'000;
 
 class MitDriveTest : public ::testing::Test {
@@ -40,7 +40,7 @@ class MitDriveTest : public ::testing::Test {
   }
 
   /// What it answers, one frame; empty bytes where it says nothing.
-  CanFrame ask(std::uint32_t id, const Bytes& bytes) {
+  CanFrame ask(std::uint32_t id, const FrameBytes& bytes) {
     CanFrame frame;
     frame.id = id;
     frame.length = 8;
@@ -68,7 +68,7 @@ TEST_F(MitDriveTest, AnswersEveryFrameWithWhatTheAxisDoes) {
   // Off; 1 rad, 1 rad/s, 1 Nm of 4 rated; 25 degC twice.
   const CanFrame off = ask(0x001, kDisableFrame);
   EXPECT_EQ(off.id, 0x011U);
-  EXPECT_EQ(off.data, (Bytes{0x01, 0x8A, 0x3D, 0x84, 0x48, 0xCC, 0x19, 0x19}));
+  EXPECT_EQ(off.data, (FrameBytes{0x01, 0x8A, 0x3D, 0x84, 0x48, 0xCC, 0x19, 0x19}));
   EXPECT_EQ(ask(0x001, kEnableFrame).data[0], 0x11);
   EXPECT_EQ(ask(0x002, kEnableFrame).length, 0) << "of another motor";
 }
@@ -110,15 +110,15 @@ TEST_F(MitDriveTest, StandHoldsItUntilItObeysAndNothingOnceItIsOff) {
 
 TEST_F(MitDriveTest, RegistersAreReadAndWrittenWhileItIsOff) {
   EXPECT_EQ(ask(0x7FF, {1, 0, 0x33, 0x07, 0, 0, 0, 0}).data,
-            (Bytes{1, 0, 0x33, 0x07, 0x11, 0, 0, 0}));
+            (FrameBytes{1, 0, 0x33, 0x07, 0x11, 0, 0, 0}));
   EXPECT_EQ(ask(0x7FF, {1, 0, 0x33, 0x15, 0, 0, 0, 0}).data,
-            (Bytes{1, 0, 0x33, 0x15, 0x00, 0x00, 0x48, 0x41}));
+            (FrameBytes{1, 0, 0x33, 0x15, 0x00, 0x00, 0x48, 0x41}));
   EXPECT_EQ(ask(0x7FF, {1, 0, 0x55, 0x09, 0x90, 1, 0, 0}).data,
-            (Bytes{1, 0, 0x55, 0x09, 0x90, 1, 0, 0}));
+            (FrameBytes{1, 0, 0x55, 0x09, 0x90, 1, 0, 0}));
   EXPECT_EQ(ask(0x7FF, {2, 0, 0x33, 0x07, 0, 0, 0, 0}).length, 0) << "of another motor";
   ask(0x001, kEnableFrame);
   EXPECT_EQ(ask(0x7FF, {1, 0, 0x55, 0x09, 0, 0, 0, 0}).data,
-            (Bytes{1, 0, 0x55, 0x09, 0x90, 1, 0, 0}));
+            (FrameBytes{1, 0, 0x55, 0x09, 0x90, 1, 0, 0}));
 }
 
 // TIMEOUT 400 x 50 us = 20 ms.
