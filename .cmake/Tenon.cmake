@@ -280,7 +280,8 @@ function(tenon_test area)
     set(rest TEST_FILTER "-${full}")
   endif()
   gtest_discover_tests(tests_${area} ${common} ${rest}
-    PROPERTIES LABELS ${area} TIMEOUT 600 RUN_SERIAL ${arg_SERIAL})
+    PROPERTIES LABELS ${area} TIMEOUT 600 RUN_SERIAL ${arg_SERIAL}
+      ENVIRONMENT TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/threads/tsan.supp)
 endfunction()
 
 # Whether this build is to have the tests of an area.
