@@ -2,6 +2,7 @@
 """Runs clang-tidy over Tenon's own sources: over those that have changed, or over all.
 
   .ci/tidy.py build/lint [-j N] [--all] [PATH...]    PATH: folders or files below the repository
+  .ci/tidy.py build/lint --list                      only says which have changed
 
 Changed means: neither this text (but for its include lines, so that moving a file changes nothing) stood
 anywhere in the commit that .ci/linted names, nor has this file passed before on this machine. For a changed
@@ -95,7 +96,7 @@ def linted_texts():
     if listing.returncode:
         return None
     blobs = [line.split()[2] for line in listing.stdout.splitlines()
-             if line.endswith((b".cpp", b".h", b".clang-tidy"))]
+             if line.endswith((b".cpp", b".h", b".clang-tidy", b".suppressions"))]
     out = git("cat-file", "--batch", input=b"\n".join(blobs) + b"\n").stdout
     keys = set()
     position = 0
@@ -197,15 +198,21 @@ def main():
     parser.add_argument("paths", nargs="*")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--all", action="store_true")
+    parser.add_argument("--list", action="store_true")
     arguments = parser.parse_intermixed_args()
     build = arguments.build.resolve()
 
     ours = entries(build, arguments.paths)
     linted = None if arguments.all else linted_texts()
-    if linted is None and not arguments.all:
+    if linted is None and not arguments.all and not arguments.list:
         print("clang-tidy: the commit that .ci/linted names is not in this clone; all files are checked")
     if linted is not None and rules_key((SOURCE / ".clang-tidy").read_bytes()) not in linted:
         linted = None
+    if arguments.list:
+        suppressed = text_key((SOURCE / ".ci/cppcheck.suppressions").read_bytes())
+        known = linted is not None and suppressed in linted
+        print("".join(f"{path}\n" for path in (changed(ours, linted) if known else ours)), end="")
+        return 0
     work = ours if linted is None else changed(ours, linted)
     database = write_database(build, work)
     stamps = memory()
