@@ -86,7 +86,7 @@ StartPositions start_positions(const Pose& start, const Cell& cell,
     const auto inverse = kinematics.joints(start, seed, parameters);
     for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
       const Joint& joint = cell.robot.joints[i];
-      seed[i] = joint.lower + random.uniform() * (joint.upper - joint.lower);
+      seed[i] = random.uniform(joint.lower, joint.upper);
     }
     if (inverse.status != SerialChain::InverseStatus::kSolved) continue;
     const Vector6 off = displacement_between(kinematics.tool(inverse.position), start);

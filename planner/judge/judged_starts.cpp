@@ -98,7 +98,7 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
     JudgedStart drawn = draw_place(random, task, start, rollout);
     PhysicalParameters& p = drawn.particle.physics;
     p.contact_stiffness_Npm = plan.contact_stiffness_Npm;
-    p.friction = task.friction.low + random.uniform() * (task.friction.high - task.friction.low);
+    p.friction = random.uniform(task.friction.low, task.friction.high);
     if (task.oversize_m > 0.0) p.oversize_m = random.uniform() * task.oversize_m;
     p.latency_s = late.uniform() * latency_to_hold_s(task, plan.latency_max_s);
     const bool at_corner = physics == DrawnPhysics::kCorners && i % 2 == 1;

@@ -17,6 +17,7 @@ class Random {
 
   [[nodiscard]] double normal();   ///< mean 0, standard deviation 1
   [[nodiscard]] double uniform();  ///< in [0, 1), 53 bits
+  [[nodiscard]] double uniform(double low, double high) { return low + uniform() * (high - low); }
 
  private:
   [[nodiscard]] bool half_exponential();       // true with probability exp(-1/2)

@@ -18,10 +18,6 @@ namespace {
 
 constexpr double kFlight_s = 0.002;
 
-double between(Random& random, double low, double high) {
-  return low + random.uniform() * (high - low);
-}
-
 Vector3 direction(Random& random) {
   return Vector3(random.normal(), random.normal(), random.normal()).normalized();
 }
@@ -38,21 +34,21 @@ struct Case {
 Case drawn(Random& random, std::uint8_t compliant_axes, const std::vector<Vector3>& normals) {
   Case one;
   one.compliance.compliant_axes = compliant_axes;
-  one.law = {between(random, 0.0, 0.8), between(random, 1e4, 1e6)};
-  if (random.uniform() < 0.5) one.arm.give_mpN = between(random, 0.0, 1e-4);
+  one.law = {random.uniform(0.0, 0.8), random.uniform(1e4, 1e6)};
+  if (random.uniform() < 0.5) one.arm.give_mpN = random.uniform(0.0, 1e-4);
   for (const Vector3& normal : normals) {
     dContactGeom& point = one.points.emplace_back();
     for (int axis = 0; axis < 3; ++axis) {
       point.normal[axis] = normal[axis];
-      point.pos[axis] = between(random, -0.1, 0.1);
+      point.pos[axis] = random.uniform(-0.1, 0.1);
     }
-    point.depth = between(random, 0.0, 1e-3);
+    point.depth = random.uniform(0.0, 1e-3);
   }
   for (int axis = 0; axis < 3; ++axis) {
-    one.before.velocity[axis] = between(random, -0.2, 0.2);
-    one.now.velocity[axis] = between(random, -0.2, 0.2);
-    one.now.acceleration[axis] = between(random, -1.0, 1.0);
-    one.now.pose.position_m[axis] = between(random, -0.01, 0.01);
+    one.before.velocity[axis] = random.uniform(-0.2, 0.2);
+    one.now.velocity[axis] = random.uniform(-0.2, 0.2);
+    one.now.acceleration[axis] = random.uniform(-1.0, 1.0);
+    one.now.pose.position_m[axis] = random.uniform(-0.01, 0.01);
   }
   return one;
 }
@@ -150,7 +146,7 @@ TEST(LockedContacts, ACornerOfTwoOrThreeFaces) {
 
 TEST(LockedContacts, TheSidesOfARoundHole) {
   const auto sides = [](Random& r) {
-    const double angle_rad = between(r, 0.0, 6.0);
+    const double angle_rad = r.uniform(0.0, 6.0);
     std::vector<Vector3> normals;
     for (const double turn_rad : {0.0, 0.3927, -0.3927}) {
       normals.emplace_back(std::cos(angle_rad + turn_rad), std::sin(angle_rad + turn_rad), 0.0);

@@ -14,10 +14,6 @@
 namespace tenon::sim {
 namespace {
 
-double between(Random& random, double low, double high) {
-  return low + random.uniform() * (high - low);
-}
-
 struct Pair {
   Shape held{"held", Shape::Kind::kBox, {0.1, 0.06, 0.2}, {}};
   Shape fixed{"fixed", Shape::Kind::kBox, {0.3, 0.2, 0.1}, {}};
@@ -28,18 +24,18 @@ struct Pair {
 void place_near(Random& random, Pair& pair) {
   const Pose all{{0.1, -0.2, 0.3}, rotation_of({0.3, 0.5, -0.2})};
   const auto turned = [&](double angle_rad) { return rotation_of({0.0, 0.0, angle_rad}); };
-  const double angle_rad = random.uniform() < 0.5 ? 0.0 : between(random, 0.0, 6.0);
+  const double angle_rad = random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, 6.0);
   const Vector3 sum_m = 0.5 * (pair.held.size_m + pair.fixed.size_m);
   Pose held;
   held.orientation = turned(angle_rad);
-  const double near_m = between(random, -1e-3, 1e-3);
+  const double near_m = random.uniform(-1e-3, 1e-3);
   const double side = random.uniform() < 0.5 ? 1.0 : -1.0;
   if (random.uniform() < 0.3) {
-    held.position_m = {between(random, -0.2, 0.2), between(random, -0.15, 0.15),
+    held.position_m = {random.uniform(-0.2, 0.2), random.uniform(-0.15, 0.15),
                        side * (sum_m.z() + near_m)};
   } else {
-    held.position_m = {between(random, -0.3, 0.3), side * between(random, 0.08, 0.2),
-                       between(random, -0.14, 0.14)};
+    held.position_m = {random.uniform(-0.3, 0.3), side * random.uniform(0.08, 0.2),
+                       random.uniform(-0.14, 0.14)};
   }
   pair.held.pose = compose(all, held);
   pair.fixed.pose = all;
