@@ -45,12 +45,6 @@ constexpr int kTriesAGuide = 6;
 // After how long without a line progress is told, so that it is never silent for 2 s.
 constexpr double kSilent_s = 1.0;
 
-std::vector<Vector6> displacements_of(const Plan& plan) {
-  std::vector<Vector6> displacements;
-  for (const Step& step : plan.steps) displacements.push_back(step.displacement);
-  return displacements;
-}
-
 /// A lattice of the task's own has no other move to take.
 SuccessorEngine::Edges edges_of(const Task& task) {
   return task.guide_moves ? SuccessorEngine::Edges::kRefused : SuccessorEngine::Edges::kTaken;
@@ -153,9 +147,10 @@ class Planning {
     for (; round_ < options_.rounds_max; ++round_) {
       search({task_.w1, task_.w2, options_.expansions_max}, stop);
       if (!report_.search.has_path) return false;
-      Judgement judgement = judge_.judge(searched_->displacements(report_.search.path));
+      const std::vector<Vector6> path = searched_->displacements(report_.search.path);
+      Judgement judgement = judge_.judge(path);
       if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
-        keep(std::move(*judged), report_.search);
+        keep(std::move(*judged), path, report_.search);
         return true;
       }
       learn(std::get<Refutation>(judgement));
@@ -181,7 +176,7 @@ class Planning {
       Judgement judgement = judge_.judge(*way);
       if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
         report_.guide = guide_text(guide);
-        keep(std::move(*judged), SearchResult{});
+        keep(std::move(*judged), *way, SearchResult{});
         return true;
       }
       const auto& refutation = std::get<Refutation>(judgement);
@@ -227,7 +222,8 @@ class Planning {
     return ended(status, no_path(status, report_, searched_->graph(), limits));
   }
 
-  void keep(JudgedPlan judged, const SearchResult& search) {
+  void keep(JudgedPlan judged, std::vector<Vector6> path, const SearchResult& search) {
+    kept_path_ = std::move(path);
     judged.plan.bound = std::isfinite(search.bound) ? search.bound : 0.0;
     report_.bytes = encode_plan(judged.plan);
     report_.plan = through_bytes(judged.plan);
@@ -260,9 +256,9 @@ class Planning {
 
   /// Whether the last search's path is kept.
   bool better() {
-    const std::vector<Vector6> displacements = searched_->displacements(report_.search.path);
-    if (displacements == displacements_of(*report_.plan)) return tell_bound();
-    Judgement judgement = judge_.judge(displacements);
+    const std::vector<Vector6> path = searched_->displacements(report_.search.path);
+    if (path == kept_path_) return tell_bound();
+    Judgement judgement = judge_.judge(path);
     if (const auto* refutation = std::get_if<Refutation>(&judgement)) {
       learn(*refutation);
       refuted_ = true;
@@ -270,7 +266,7 @@ class Planning {
     }
     auto& judged = std::get<JudgedPlan>(judgement);
     if (!(judged.plan.cost < report_.plan->cost)) return false;
-    keep(std::move(judged), report_.search);
+    keep(std::move(judged), path, report_.search);
     return true;
   }
 
@@ -313,6 +309,7 @@ class Planning {
   SuccessorEngine long_succ_;
   PathJudge judge_;
   std::optional<SearchedGraph> searched_;
+  std::vector<Vector6> kept_path_;  ///< that the plan was made of
   std::size_t round_ = 0;
   bool refuted_ = false;  ///< the last better path
   double told_s_;         ///< when progress was last told

@@ -6,6 +6,7 @@
 
 #include "planner/judge/approach_speeds.h"
 #include "planner/judge/envelopes.h"
+#include "planner/judge/last_move.h"
 #include "shared/plan/codec.h"
 
 namespace tenon::planner {
@@ -45,15 +46,25 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements) {
   std::vector<double> distances_m =
       slow_from(slow, chains_of(at_contact_speed), task_.particle_sigmas);
   for (int attempt = 0; attempt < kSpeedAttempts && any_fast(distances_m); ++attempt) {
-    const Plan fast = with_slow_from(slow, distances_m);
-    Judgement judgement = at_speeds(fast, certified(fast), distances_m);
+    Plan fast = with_slow_from(slow, distances_m);
+    Certification at_speed = certified(fast);
+    Judgement judgement = at_speeds(centred(std::move(fast), std::move(at_speed)), distances_m);
     if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
   }
-  return at_speeds(slow, std::move(at_contact_speed), distances_m);
+  return at_speeds(centred(std::move(slow), std::move(at_contact_speed)), distances_m);
 }
 
-Judgement PathJudge::at_speeds(const Plan& plan, Certification certification,
-                               std::vector<double>& distances_m) {
+PathJudge::Candidate PathJudge::centred(Plan plan, Certification certification) {
+  Candidate as_is{std::move(plan), std::move(certification)};
+  if (!as_is.certification.holds()) return as_is;
+  auto moved = with_last_move_centred(as_is.plan, chains_of(as_is.certification), task_);
+  if (!moved) return as_is;
+  Certification again = certified(*moved);
+  return again.holds() ? Candidate{std::move(*moved), std::move(again)} : as_is;
+}
+
+Judgement PathJudge::at_speeds(Candidate candidate, std::vector<double>& distances_m) {
+  auto& [plan, certification] = candidate;
   const auto refuted = [&](Refutation refutation) {
     distances_m.assign(distances_m.size(), 0.0);
     return refutation;

@@ -1,7 +1,7 @@
 #pragma once
 // Whether a path becomes a plan: certified from its very bytes, brought to approach speed where
-// that holds, validated by draws, and given envelopes. What does not hold comes back as a
-// refutation; what to learn from it is not decided here.
+// that holds, its last move centred on the goal, validated by draws, and given envelopes. What does
+// not hold comes back as a refutation; what to learn from it is not decided here.
 
 #include <cstddef>
 #include <cstdint>
@@ -67,10 +67,16 @@ class PathJudge {
     std::vector<Draw> rim;
   };
 
+  struct Candidate {
+    Plan plan;
+    Certification certification;
+  };
+
+  /// Certified, and if it holds with its last move centred, where that holds as well.
+  [[nodiscard]] Candidate centred(Plan plan, Certification certification);
   /// Where the plan does not hold at its speeds, the distances are lowered, to be tried next. At
   /// contact speed throughout there is nothing to lower.
-  [[nodiscard]] Judgement at_speeds(const Plan& plan, Certification certification,
-                                    std::vector<double>& distances_m);
+  [[nodiscard]] Judgement at_speeds(Candidate candidate, std::vector<double>& distances_m);
   /// Envelopes around the chains, widened to more draws until all of a batch stay within them: what
   /// one start in a hundred does is no reason to stop.
   [[nodiscard]] std::variant<Plan, Refutation> widened(const Plan& plan, std::vector<Chain> good);
