@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kCellOfSize = 1.0 / 64.0;
 /// So far around the triangles, in cells: what moves by is near them most of the time.
-constexpr double kMargin = 16.0;
+constexpr double kMarginCells = 16.0;
 /// With more triangles than this the tree is as fast.
 constexpr std::size_t kCandidatesMax = 64;
 
@@ -17,7 +17,7 @@ constexpr std::size_t kCandidatesMax = 64;
 NearestCells::NearestCells(const Vector3& size_m) : cell_m_(kCellOfSize * size_m.maxCoeff()) {
   std::size_t all = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double extent = size_m[static_cast<Eigen::Index>(axis)] / cell_m_ + 2.0 * kMargin;
+    const double extent = size_m[static_cast<Eigen::Index>(axis)] / cell_m_ + 2.0 * kMarginCells;
     count_[axis] = static_cast<std::size_t>(std::ceil(extent));
     low_m_[static_cast<Eigen::Index>(axis)] = -0.5 * static_cast<double>(count_[axis]) * cell_m_;
     all *= count_[axis];

@@ -51,7 +51,10 @@ ArmBody::ArmBody(const Cell& cell, const Task& task, const Parameters& parameter
       gravity_mps2_(-kGravity_mps2 * cell.up_B) {
   dWorldSetGravity(world_.id(), gravity_mps2_.x(), gravity_mps2_.y(), gravity_mps2_.z());
   build(cell, parameters);
-  scene_.attach(last_link(), X_OP_);
+  const double series_Npm = parameters.contact_law.stiffness_Npm;
+  contact_law_.stiffness_Npm = part_stiffness_Npm(series_Npm);
+  part_.emplace(world_, last_link(), arm_give_mpN(series_Npm));
+  scene_.attach(part_->body(), X_OP_);
 }
 
 void ArmBody::build(const Cell& cell, const Parameters& parameters) {
@@ -112,6 +115,7 @@ void ArmBody::step(std::span<const ServoJoint::Demand> demands, double step_s) {
   scene_.placed();
   scene_.find_contacts(/*turns=*/true);
   scene_.make_joints(world_, step_s, contact_law_);
+  part_->prepare(step_s);
   const std::uint64_t messages_before = ode_messages();
   world_.step(step_s);
   solver_messages_ += ode_messages() - messages_before;
@@ -153,7 +157,8 @@ void ArmBody::read_wrench(double step_s) {
   const Eigen::Quaterniond orientation = pose_of(last_link()).orientation;
   const Vector3 sensor_m = orientation * X_OS_.position_m;
   const Vector3 weight_N = load_.mass_kg * gravity_mps2_;
-  const Vector6 contact = scene_.wrench();
+  Vector6 contact = scene_.wrench();
+  contact.tail<3>() += part_->bent_m().cross(contact.head<3>());
 
   const Vector3 force_N = weight_N - rate.head<3>();
   const Vector3 torque_Nm = contact.tail<3>() - sensor_m.cross(contact.head<3>()) +
@@ -162,7 +167,7 @@ void ArmBody::read_wrench(double step_s) {
   wrench_ << to_sensor * (contact.head<3>() + force_N), to_sensor * torque_Nm;
 }
 
-Pose ArmBody::tool() const { return compose(pose_of(last_link()), X_OP_); }
+Pose ArmBody::tool() const { return compose(pose_of(part_->body()), X_OP_); }
 
 double ArmBody::energy_J() const {
   double energy_J = 0.0;

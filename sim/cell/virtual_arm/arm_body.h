@@ -1,12 +1,14 @@
 #pragma once
 // The articulated arm in ODE: a body for each link, joined by sliders and hinges with a servo and a
 // brake each, the payload behind the force/torque sensor, and the environment that it touches.
-// Private to sim. The payload is rigid with the last link; the sensor's wrench follows from the
+// Private to sim. The payload's mass is rigid with the last link, the part's surface behind what
+// the contact stiffness leaves the arm to give way by; the sensor's wrench follows from the
 // momentum of what is beyond it. One thread; units are the joints' (m, N; rad, Nm).
 
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "shared/cell/cell.h"
 #include "shared/ports/arm.h"
 #include "shared/task/task.h"
+#include "sim/cell/virtual_arm/held_part.h"
 #include "sim/cell/virtual_arm/servo_joint.h"
 #include "sim/physics/contacts/contact_law.h"
 #include "sim/physics/scene.h"
@@ -25,8 +28,8 @@ class ArmBody {
  public:
   struct Parameters {
     JointVector start{};
-    Pose X_BE;  ///< where the task frame of the environment really stands, in the base
-    ContactLaw contact_law;
+    Pose X_BE;               ///< where the task frame of the environment really stands, in the base
+    ContactLaw contact_law;  ///< its stiffness: of parts and arm in series
     double servo_lag_s = 0.0;
     double integral_time_s = 0.02;  ///< of the servos; 0: none
     double backlash_m = 0.0;        ///< of every prismatic joint
@@ -45,7 +48,7 @@ class ArmBody {
   /// What acts on the load beyond the sensor (contacts, weight, minus inertia), in the sensor's
   /// axes about its origin, over the last step.
   [[nodiscard]] const Vector6& wrench() const { return wrench_; }
-  [[nodiscard]] Pose tool() const;  ///< in the base
+  [[nodiscard]] Pose tool() const;  ///< where the part is, in the base
   /// Kinetic and potential, of links and payload; its zero is arbitrary.
   [[nodiscard]] double energy_J() const;
   /// Sum of the environment's forces on the part in the last step.
@@ -72,6 +75,7 @@ class ArmBody {
   Vector3 gravity_mps2_;
   std::vector<LinkInertia> links_;  ///< the bodies'; their origins are the centres of mass
   std::deque<ServoJoint> joints_;
+  std::optional<HeldPart> part_;
   LinkInertia load_;                    ///< beyond the sensor, in the last body's frame
   Pose X_OP_;                           ///< tool in the last body's frame
   Pose X_OS_;                           ///< sensor in the last body's frame

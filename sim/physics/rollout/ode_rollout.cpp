@@ -17,8 +17,6 @@ namespace {
 
 // A part this deep inside another has gone through it; the force limit alone presses far less.
 constexpr double kTunnelled_m = 5e-3;
-// Between parts: what gives way far more is the arm.
-constexpr double kPartStiffness_Npm = 1e6;
 // Where two solids meet, a point that is pressed in deeper than it is beside an edge is taken to
 // have come from that side. So none comes in by more than this between two looks at the contacts,
 // or than the way of a sixteenth of a step.
@@ -32,14 +30,6 @@ bool turns(const MoveParameters& move) {
   constexpr unsigned kRotations = 0b111000;
   return (move.compliance.compliant_axes & kRotations) != 0 ||
          !move.displacement.tail<3>().isZero(0.0);
-}
-
-/// Of two parts, where arm and parts in series are so stiff.
-double part_stiffness_Npm(double series_Npm) { return std::max(series_Npm, kPartStiffness_Npm); }
-
-/// What the arm has of that.
-ArmGive arm_give(double series_Npm) {
-  return {1.0 / series_Npm - 1.0 / part_stiffness_Npm(series_Npm)};
 }
 
 /// That holds a particle's tool where it is at rest.
@@ -103,7 +93,7 @@ struct OdeRollout::Physics {
     turning = turns(move);
     const double series_Npm = particle.physics.contact_stiffness_Npm;
     law = {particle.physics.friction, part_stiffness_Npm(series_Npm)};
-    tool.set_compliance(move.compliance, turning, arm_give(series_Npm));
+    tool.set_compliance(move.compliance, turning, {arm_give_mpN(series_Npm)});
     tool.place(particle.pose, resting_force_N(particle, move));
     scene.place_environment(particle.environment);
     scene.set_oversize(particle.physics.oversize_m);
