@@ -10,13 +10,13 @@ set -euo pipefail
 
 build_packages=(
   build-essential cmake ninja-build ccache
-  libeigen3-dev libode-dev liblcm-dev liblcm-bin
+  libeigen3-dev libode-dev liblcm-dev liblcm-bin libncurses-dev
   libyaml-cpp-dev liburdfdom-dev libconsole-bridge-dev libcli11-dev nlohmann-json3-dev
 )
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev libfcl-dev
   clang-format clang-tidy cppcheck git python3 python3-can python3-serial iproute2
-  python3-jsonschema python3-yaml can-utils qemu-system-x86 busybox-static cpio chromium rt-tests
+  python3-jsonschema python3-yaml python3-pyte util-linux can-utils qemu-system-x86 busybox-static cpio chromium rt-tests
 )
 full_packages=(mmdebstrap lintian)
 fuzz_packages=(clang)

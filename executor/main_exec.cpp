@@ -19,6 +19,7 @@
 #include "executor/telemetry/run_result.h"
 #include "hw/bus_load/bus_load.h"
 #include "hw/bus_load/response_times.h"
+#include "hw/can/open_bus.h"
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
 #include "shared/config/load.h"
@@ -45,15 +46,25 @@ int run_plan(const Options& options, const Cell& cell, const DryRun& dry_run) {
 }
 
 int identify(const Options& options, const Cell& cell) {
+  const bool friction = !options.identify_friction.empty();
+  if (options.identify_payload && cell.joint_torque) {
+    throw InputError("cell '" + cell.name +
+                     "': --identify-payload needs a force/torque sensor; weigh the payload");
+  }
   const std::unique_ptr<Identification> identification =
-      options.identify_payload ? make_payload_identification(cell)
-                               : make_contact_identification(cell, options.identify_contact);
+      friction                   ? make_friction_identification(cell)
+      : options.identify_payload ? make_payload_identification(cell)
+                                 : make_contact_identification(cell, options.identify_contact);
   const ControlTask& task = identification->motion();
-  print_identification(options.identify_payload ? "payload" : "contact", cell);
+  print_identification(friction                   ? "friction"
+                       : options.identify_payload ? "payload"
+                                                  : "contact",
+                       cell);
   TaskRun run(options, identification->motion(), nullptr, stop_asked);
   run.run();
   std::optional<Finding> finding;
   if (task.ending().reason == EndReason::kMeasured) finding = identification->finding();
+  if (finding && !finding->file.empty()) write_file(options.identify_friction, finding->file);
   // Its first line is the result's message.
   if (finding) std::fputs(finding->report.substr(finding->report.find('\n') + 1).c_str(), stdout);
   return run.conclude(
@@ -62,7 +73,8 @@ int identify(const Options& options, const Cell& cell) {
 
 int execute(const Options& options) {
   check_outputs(options);
-  const Cell cell = load_cell(options.cell);
+  Cell cell = load_cell(options.cell);
+  if (!options.can.empty()) hw::settle_buses(hw::parse_bus_uris(options.can), cell.robot);
   if (options.plan.empty() && !options.identifies()) {
     throw InputError("--plan is required; see --help");
   }

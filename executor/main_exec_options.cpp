@@ -22,7 +22,10 @@ void add_work(CLI::App& app, Options& options) {
       app.add_flag("--keys", options.keys, "p and Enter pauses the move, r and Enter goes on"),
       app.add_flag("--go-to-start", options.go_to_start, "move to the plan's start first"),
       app.add_option("--trace", options.trace, "inputs of every guarded move, to replay")};
-  app.add_option("--can", options.can, "socketcan:can0, slcan:/dev/ttyACM0 or slcan://HOST:PORT");
+  app.add_option(
+      "--can", options.can,
+      "socketcan:can0, slcan:/dev/ttyACM0 or slcan://HOST:PORT; arm=URI,sensor=URI where the "
+      "force/torque sensor has a bus of its own");
   app.add_option("--rt", options.rt, "real time: require, prefer or off")
       ->check(CLI::IsMember({"require", "prefer", "off"}))
       ->capture_default_str();
@@ -33,8 +36,14 @@ void add_work(CLI::App& app, Options& options) {
   CLI::Option* contact = app.add_option(
       "--identify-contact", options.identify_contact,
       "instead of a plan: stiffness and lag at what stands along x, -x, y, -y, z or -z");
-  contact->excludes(payload);
-  for (CLI::Option* option : of_a_plan) option->excludes(payload)->excludes(contact);
+  CLI::Option* friction = app.add_option(
+      "--identify-friction", options.identify_friction,
+      "instead of a plan: friction of each joint, into the file that a cell's joint_torque names");
+  contact->excludes(payload)->excludes(friction);
+  payload->excludes(friction);
+  for (CLI::Option* option : of_a_plan) {
+    option->excludes(payload)->excludes(contact)->excludes(friction);
+  }
 }
 
 void add_outputs(CLI::App& app, Options& options) {
@@ -66,7 +75,8 @@ Options parse_options(int argc, char** argv) {
 }
 
 void check_outputs(const Options& options) {
-  std::vector<FileOption> written = {{"--json", options.json}};
+  std::vector<FileOption> written = {{"--json", options.json},
+                                     {"--identify-friction", options.identify_friction}};
   if (!options.dry_run) {
     written.insert(written.end(), {{"--log", options.log},
                                    {"--can-log", options.can_log},
@@ -76,7 +86,7 @@ void check_outputs(const Options& options) {
   check_apart(written, {{"--cell", options.cell}, {"--plan", options.plan}});
   if (!options.dry_run) {
     if (options.can.empty()) throw InputError("--can is required, but for --dry-run; see --help");
-    if (options.can.rfind("slcan-listen:", 0) == 0) {
+    if (options.can.find("slcan-listen:") != std::string::npos) {
       throw InputError("--can " + options.can +
                        ": listens for an arm that would have to call; give slcan://HOST:PORT");
     }
@@ -86,6 +96,7 @@ void check_outputs(const Options& options) {
     }
     check_writable(options.black_box);
   }
+  if (!options.identify_friction.empty()) check_writable(options.identify_friction);
   if (!options.json.empty() && options.json != "-") check_writable(options.json);
 }
 

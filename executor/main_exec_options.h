@@ -18,7 +18,8 @@ struct Options {
   bool keys = false;
   bool dry_run = false;
   bool identify_payload = false;
-  std::string identify_contact;  ///< direction
+  std::string identify_contact;   ///< direction
+  std::string identify_friction;  ///< file to write
   std::string lcm_url = kDefaultLcmUrl;
   std::string log;
   std::string can_log;
@@ -26,7 +27,9 @@ struct Options {
   std::string json;
   std::string black_box = "tenon-black-box.csv";
 
-  [[nodiscard]] bool identifies() const { return identify_payload || !identify_contact.empty(); }
+  [[nodiscard]] bool identifies() const {
+    return identify_payload || !identify_contact.empty() || !identify_friction.empty();
+  }
 };
 
 /// @throws InputError for bad usage, CommandLineAnswered after --help or --version

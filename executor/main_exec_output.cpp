@@ -4,6 +4,7 @@
 
 #include "executor/dry_run/dry_run_report.h"
 #include "hw/bus_load/bus_load.h"
+#include "shared/base/text.h"
 #include "shared/config/load.h"
 
 namespace tenon::executor {
@@ -28,14 +29,18 @@ void HoldPrinter::consume(const CycleRecord& record) {
 }
 
 void print_opening(const Plan& plan, const Cell& cell, const DryRun& dry_run) {
-  const hw::BusLoad load = hw::bus_load(cell.robot);
+  std::string loads;
+  for (const std::uint8_t bus : hw::buses_of(cell.robot)) {
+    loads += ", " + hw::bus_title(cell.robot, bus) +
+             format(" load at most %.0f %%", 100.0 * hw::bus_load(cell.robot, bus).worst);
+  }
   std::printf("plan '%s', start '%s', %d steps; cell '%s', robot '%s'\n", plan.task_name.c_str(),
               plan.start_name.c_str(), static_cast<int>(plan.steps.size()), cell.name.c_str(),
               cell.robot.name.c_str());
-  std::printf("cycle %g ms, latency %g ms (plan allows %g), bus load at most %.0f %%\n",
-              1e-3 * cell.robot.cycle_us, 1e3 * latency_s(cell.robot), 1e3 * plan.latency_max_s,
-              100.0 * load.worst);
+  std::printf("cycle %g ms, latency %g ms (plan allows %g)%s\n", 1e-3 * cell.robot.cycle_us,
+              1e3 * latency_s(cell.robot), 1e3 * plan.latency_max_s, loads.c_str());
   std::printf("%s", slowed_steps(dry_run, cell).c_str());
+  std::printf("%s", resolved_steps(dry_run, cell).c_str());
   std::fflush(stdout);
 }
 

@@ -1,5 +1,6 @@
 #include "executor/main_exec_run.h"
 
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <thread>
@@ -9,6 +10,7 @@
 #include "executor/main_exec_output.h"
 #include "hw/bus_load/bus_load.h"
 #include "hw/can/candump_log.h"
+#include "hw/can/metered_bus.h"
 #include "hw/can/open_bus.h"
 #include "hw/can/recording_bus.h"
 #include "hw/robot_arm/open_arm.h"
@@ -21,7 +23,7 @@ namespace tenon::executor {
 class CanLog : public RecordConsumer {
  public:
   explicit CanLog(const std::string& file)
-      : log_(file, "can0", 1000 * wall_clock_us() - monotonic_now_ns()) {}
+      : log_(file, {"can0", "can1"}, 1000 * wall_clock_us() - monotonic_now_ns()) {}
   void consume(const CycleRecord& /*record*/) override { drain(); }
   void drain() { log_.drain(ring_); }
   [[nodiscard]] RecordReport close() { return log_.close(ring_); }
@@ -70,6 +72,11 @@ std::vector<std::pair<std::string, std::uint64_t>> named(const hw::ArmCounters& 
           {"invalid_setpoints", c.invalid_setpoints}};
 }
 
+/// On each bus.
+std::array<std::uint32_t, BusPair::kBuses> frames_at_once(const Robot& robot) {
+  return {hw::master_frames(robot, kArmBus), hw::master_frames(robot, kSensorBus)};
+}
+
 }  // namespace
 
 TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
@@ -77,13 +84,17 @@ TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* st
     : options_(options),
       task_(task),
       stop_(stop),
-      bus_(hw::open_bus(options.can, robot().bitrate_bps, hw::master_frames(robot()))),
+      buses_(std::make_unique<hw::Buses>(hw::parse_bus_uris(options.can), robot(),
+                                         frames_at_once(robot()))),
       can_log_(options.can_log.empty() ? nullptr : std::make_unique<CanLog>(options.can_log)),
-      logged_bus_(can_log_ ? std::make_unique<hw::RecordingBus>(*bus_, can_log_->ring()) : nullptr),
-      arm_(hw::open_arm(task.cell(), logged_bus_ ? static_cast<CanBus&>(*logged_bus_) : *bus_)),
+      logged_bus_(can_log_ ? std::make_unique<hw::RecordingBus>(bus(), can_log_->ring()) : nullptr),
+      metered_bus_(std::make_unique<hw::MeteredBus>(logged_bus_ ? static_cast<CanBus&>(*logged_bus_)
+                                                                : bus())),
+      arm_(hw::open_arm(task.cell(), *metered_bus_)),
       recorder_(std::make_unique<Recorder>()),
       runner_(*arm_, task, recorder_.get(), {}),
-      telemetry_(outputs(options), robot().joints.size(), steps, *recorder_),
+      telemetry_(outputs(options), task.cell(), steps, *recorder_,
+                 {[this] { return metered_bus_->traffic(); }, hw::BusLoad::kWorstAllowed}),
       hold_printer_(task.cell()) {
   recorder_->add(telemetry_);
   recorder_->add(hold_printer_);
@@ -95,10 +106,13 @@ TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* st
 
 TaskRun::~TaskRun() = default;
 
+CanBus& TaskRun::bus() const { return buses_->all(); }
+
 void TaskRun::run() {
   for (const std::string& remark : hw::start_remarks(robot())) {
     std::fprintf(stderr, "tenon-exec: %s\n", remark.c_str());
   }
+  telemetry_.publish_setup();
   recorder_->start();
   std::exception_ptr failure;
   std::thread real_time([&] {
@@ -160,7 +174,7 @@ void TaskRun::keep_black_box(RunResult& result) const {
 
 int TaskRun::conclude(RunResult result) {
   result.arm_counters = named(arm_->counters());
-  result.bus = bus_->status();
+  result.bus = bus().status();
   telemetry_.publish_summary(result, task_.record());
   result.unpublished = telemetry_.failures();
   result.records = close_records();

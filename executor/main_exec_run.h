@@ -21,7 +21,9 @@
 #include "shared/ports/can_bus.h"
 
 namespace tenon::hw {
+class Buses;
 class DeviceArm;
+class MeteredBus;
 class RecordingBus;
 }  // namespace tenon::hw
 
@@ -57,6 +59,8 @@ class TaskRun {
 
  private:
   void run_arm();
+  /// Both, where there are two.
+  [[nodiscard]] CanBus& bus() const;
   [[nodiscard]] std::vector<RecordReport> close_records();
   void keep_black_box(RunResult& result) const;
   [[nodiscard]] const Robot& robot() const { return task_.cell().robot; }
@@ -64,9 +68,10 @@ class TaskRun {
   const Options& options_;
   ControlTask& task_;
   const std::atomic<bool>& stop_;
-  std::unique_ptr<CanBus> bus_;
+  std::unique_ptr<hw::Buses> buses_;
   std::unique_ptr<CanLog> can_log_;
   std::unique_ptr<hw::RecordingBus> logged_bus_;
+  std::unique_ptr<hw::MeteredBus> metered_bus_;
   std::unique_ptr<hw::DeviceArm> arm_;
   std::unique_ptr<Recorder> recorder_;
   CycleRunner runner_;

@@ -1,57 +1,181 @@
-// tenon-monitor: watches a run over LCM. Prints events as lines and, on a terminal, the state of
-// the cycle about ten times a second. It can only listen.
-
-#include <unistd.h>
+// tenon-monitor: watches a run over LCM, on a terminal as a dashboard, elsewhere as lines. It can
+// only listen. Only composes; see executor/README.md.
 
 #include <CLI/CLI.hpp>
-#include <csignal>
+#include <array>
+#include <atomic>
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <lcm/lcm-cpp.hpp>
+#include <memory>
+#include <span>
 #include <string>
+#include <utility>
 
-#include "executor/telemetry/run_view.h"
+#include "executor/main_monitor_screen.h"
+#include "executor/monitor/dashboard.h"
+#include "executor/monitor/recording.h"
+#include "executor/monitor/run_model.h"
+#include "executor/monitor/run_view.h"
 #include "executor/telemetry/telemetry.h"
 #include "shared/base/error.h"
 #include "shared/config/command_line.h"
+#include "shared/config/signals.h"
 #include "shared/system/lcm_url.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace tenon::executor {
 namespace {
 
-// It holds nothing that an end could spoil, and LCM may be waiting for a log that gives nothing.
-void leave(int /*signal*/) {
-  static_cast<void>(::write(STDOUT_FILENO, "\n", 1));
-  ::_exit(0);
+constexpr int kWait_ms = 50;
+constexpr std::int64_t kRefresh_ns = 100'000'000;
+constexpr int kQueue = 5000;  // messages: some seconds of a fast cycle
+
+struct Options {
+  std::string url = kDefaultLcmUrl;
+  std::string record_to = ".";
+  bool lines = false;
+};
+
+std::atomic<bool> leave_asked{false};
+
+std::span<const std::uint8_t> bytes_of(const lcm::ReceiveBuffer& buffer) {
+  return {static_cast<const std::uint8_t*>(buffer.data), buffer.data_size};
 }
 
-// What LCM calls, with the bytes as they came: its own decoding lets what is malformed throw
-// through its C code.
-void take(const lcm::ReceiveBuffer* buffer, const std::string& channel, RunView* view) {
-  const auto* bytes = static_cast<const std::uint8_t*>(buffer->data);
-  std::fputs(view->take(channel, {bytes, buffer->data_size}).c_str(), stdout);
-  std::fflush(stdout);
-}
-
-int watch(const std::string& url) {
-  check_lcm_url(url);
-  check_lcm_log(url);
-  if (!has_multicast_route(url)) {
-    throw InputError("--lcm-url " + url + ": no multicast route; " + kSetMulticastRoute);
-  }
-  lcm::LCM lcm(url);
-  if (!lcm.good()) throw InputError("--lcm-url " + url + ": cannot be opened");
-  RunView view(isatty(STDOUT_FILENO) == 1);
-  for (const char* channel : {kCycleChannel, kStepChannel, kRunChannel}) {
-    lcm.subscribeFunction(channel, &take, &view);
-  }
-  while (lcm.handle() >= 0) {
-  }  // to the end of a log
-  std::printf("\n");
-  if (view.malformed() == 0) return 0;
+int exit_status(std::uint64_t malformed) {
+  if (malformed == 0) return 0;
   std::fprintf(stderr, "tenon-monitor: %llu messages could not be decoded\n",
-               static_cast<unsigned long long>(view.malformed()));
+               static_cast<unsigned long long>(malformed));
   return 1;
+}
+
+// The bytes as they came: LCM's own decoding lets what is malformed throw through its C code.
+template <typename Listener>
+void subscribe(lcm::LCM& lcm, Listener& listener) {
+  for (const char* channel :
+       {kCycleChannel, kStepChannel, kRunChannel, kSetupChannel, kStatusChannel}) {
+    lcm.subscribeFunction(channel, &Listener::take, &listener)->setQueueCapacity(kQueue);
+  }
+}
+
+// Waits for messages, at most kWait_ms. False: nothing will come any more, as at the end of a log.
+// A signal, such as that of a window's new size, ends the wait alone.
+bool listen(lcm::LCM& lcm) {
+  errno = 0;
+  return lcm.handleTimeout(kWait_ms) >= 0 || errno == EINTR;
+}
+
+// --- lines ----------------------------------------------------------------------------------
+
+struct Lines {
+  static void take(const lcm::ReceiveBuffer* buffer, const std::string& channel, Lines* lines) {
+    std::fputs(lines->view.take(channel, bytes_of(*buffer)).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  RunView view;
+};
+
+int print_lines(lcm::LCM& lcm) {
+  Lines lines;
+  subscribe(lcm, lines);
+  while (!leave_asked && listen(lcm)) {
+  }
+  std::printf("\n");
+  return exit_status(lines.view.malformed());
+}
+
+// --- dashboard ------------------------------------------------------------------------------
+
+std::string stamp() {
+  const auto now_s = static_cast<std::time_t>(wall_clock_us() / 1'000'000);
+  std::tm parts{};
+  std::array<char, 32> text{};
+  if (::localtime_r(&now_s, &parts) == nullptr) return "0";
+  std::strftime(text.data(), text.size(), "%Y%m%d-%H%M%S", &parts);
+  return text.data();
+}
+
+class Dashboard {
+ public:
+  Dashboard(const Options& options, std::unique_ptr<Screen> screen)
+      : screen_(std::move(screen)), recording_(options.record_to) {
+    view_.source = options.url;
+    view_.keys = screen_->keys();
+  }
+
+  static void take(const lcm::ReceiveBuffer* buffer, const std::string& channel,
+                   Dashboard* dashboard) {
+    const auto bytes = bytes_of(*buffer);
+    dashboard->model_.take(channel, bytes, monotonic_now_ns());
+    dashboard->say(dashboard->recording_.add(buffer->recv_utime, channel, bytes));
+  }
+
+  /// Until somebody leaves.
+  int run(lcm::LCM& lcm) {
+    std::int64_t shown_ns = 0;
+    while (!leave_asked && !press(screen_->key())) {
+      if (view_.source_ended) {
+        wait_until_ns(monotonic_now_ns() + kRefresh_ns);
+      } else {
+        view_.source_ended = !listen(lcm);
+      }
+      const std::int64_t now_ns = monotonic_now_ns();
+      if (now_ns - shown_ns < kRefresh_ns) continue;
+      shown_ns = now_ns;
+      show(now_ns);
+    }
+    say(recording_.end());
+    screen_.reset();
+    if (!view_.notice.empty()) std::printf("%s\n", view_.notice.c_str());
+    return exit_status(model_.malformed);
+  }
+
+ private:
+  void show(std::int64_t now_ns) {
+    screen_->take_size();
+    view_.width = screen_->width();
+    view_.height = screen_->height();
+    view_.now_ns = now_ns;
+    view_.recording = recording_.file();
+    view_.recorded = recording_.messages();
+    screen_->show(dashboard(model_, view_));
+  }
+  /// True: leave.
+  bool press(int key) {
+    if (key == 'r') say(recording_.on() ? recording_.end() : recording_.begin(stamp()));
+    constexpr int kControlL = 'L' - '@';
+    if (key == kControlL) screen_->redraw();
+    return key == 'q';
+  }
+  void say(const Recording::Said& said) {
+    if (said.text.empty()) return;
+    view_.notice = said.text;
+    view_.notice_bad = said.bad;
+  }
+
+  std::unique_ptr<Screen> screen_;
+  RunModel model_;
+  Recording recording_;
+  View view_;
+};
+
+int watch(const Options& options) {
+  check_lcm_url(options.url);
+  check_lcm_log(options.url);
+  if (!has_multicast_route(options.url)) {
+    throw InputError("--lcm-url " + options.url + ": no multicast route; " + kSetMulticastRoute);
+  }
+  lcm::LCM lcm(options.url);
+  if (!lcm.good()) throw InputError("--lcm-url " + options.url + ": cannot be opened");
+  stop_on_signals(leave_asked);
+  auto screen = options.lines ? nullptr : Screen::open();
+  if (screen == nullptr) return print_lines(lcm);
+  Dashboard dashboard(options, std::move(screen));
+  subscribe(lcm, dashboard);
+  return dashboard.run(lcm);
 }
 
 }  // namespace
@@ -60,13 +184,16 @@ int watch(const std::string& url) {
 int main(int argc, char** argv) {
   return tenon::run_main("tenon-monitor", [&] {
     using namespace tenon::executor;
-    std::string url = kDefaultLcmUrl;
-    CLI::App app{"Watches a run of tenon-exec over LCM."};
+    Options options;
+    CLI::App app{
+        "Watches a run of tenon-exec over LCM: on a terminal as a dashboard, else line by line."};
     app.footer("Examples:\n  tenon-monitor\n  tenon-monitor --lcm-url 'file://run.lcmlog?speed=1'");
     app.set_version_flag("--version", TENON_VERSION);
-    app.add_option("--lcm-url", url, "where telemetry comes from")->capture_default_str();
+    app.add_option("--lcm-url", options.url, "where telemetry comes from")->capture_default_str();
+    app.add_option("--record-to", options.record_to, "folder of what the key r records")
+        ->capture_default_str();
+    app.add_flag("--lines", options.lines, "lines on a terminal too");
     tenon::parse(app, argc, argv);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) (void)std::signal(signal, &leave);
-    return watch(url);
+    return watch(options);
   });
 }

@@ -6,6 +6,7 @@
 
 #include "shared/base/error.h"
 #include "shared/base/text.h"
+#include "shared/joint_torque/pose_resolution.h"
 #include "shared/motion/rules.h"
 #include "shared/motion/stiff_contact.h"
 
@@ -19,6 +20,9 @@ constexpr double kPeakShare = 0.8;
 constexpr double kContactSpeedMin_mps = 2e-3;
 constexpr double kNoiseDeviations = 5.0;
 constexpr double kNoiseMargin = 1.05;
+// Of what joints resolve at starts and goal: between them, and in another of the arm's ways to hold
+// the tool, they may resolve less.
+constexpr double kResolutionMargin = 1.2;
 // A contact is confirmed by three samples in a row, however long they take.
 constexpr std::uint32_t kDebouncePeriods = 2;
 constexpr double kTimeoutMax_us = 600e6;
@@ -32,6 +36,7 @@ class Fitting {
 
   CellFit run() {
     fit_debounce();
+    fit_resolution();
     fit_thresholds();
     fit_compliance();
     fit_contact_speed();
@@ -56,6 +61,55 @@ class Fitting {
     debounce_us = least_us;
   }
 
+  // Where joints tell the force, its off-threshold is what they have to resolve.
+  void fit_resolution() {
+    if (!cell_.joint_torque) return;
+    if (cell_.joint_torque->joints.empty()) {
+      refuse("its joint_torque has no friction file; let tenon-exec --identify-friction write one");
+    }
+    Task& task = fit_.task;
+    Vector6 resolution = Vector6::Zero();
+    std::vector<Pose> tools = {task.goal};
+    for (const Start& start : task.starts) tools.push_back(start.pose);
+    for (const Pose& tool : tools) {
+      if (const auto here = resolution_at(cell_, tool)) resolution = resolution.cwiseMax(*here);
+    }
+    ContactThresholds& t = task.motion.thresholds;
+    const unsigned axes = task.compliance.compliant_axes;
+    const double force_N = kResolutionMargin * coarsest(resolution, axes & 0x07U);
+    if (t.force_off_N < force_N) {
+      note(format("force_off %g -> %.3g N, keep and on with it: the joints' efforts resolve %.3g N",
+                  t.force_off_N, force_N, force_N / kResolutionMargin));
+      force_cause_ = format("; that follows from the %.3g N that the joints' efforts resolve",
+                            force_N / kResolutionMargin);
+      t.force_on_N *= force_N / t.force_off_N;
+      t.force_keep_N *= force_N / t.force_off_N;
+      t.force_off_N = force_N;
+    }
+    const double torque_Nm = kResolutionMargin * coarsest(resolution, axes & 0x38U);
+    if (t.torque_off_Nm < torque_Nm) {
+      note(
+          format("torque_off %g -> %.3g Nm, keep and on with it: the joints' efforts resolve %.3g "
+                 "Nm",
+                 t.torque_off_Nm, torque_Nm, torque_Nm / kResolutionMargin));
+      t.torque_on_Nm *= torque_Nm / t.torque_off_Nm;
+      t.torque_keep_Nm *= torque_Nm / t.torque_off_Nm;
+      t.torque_off_Nm = torque_Nm;
+    }
+  }
+
+  [[nodiscard]] double coarsest(const Vector6& resolution, unsigned axes) const {
+    double coarsest = 0.0;
+    for (int axis = 0; axis < 6; ++axis) {
+      if ((axes >> axis & 1U) == 0) continue;
+      if (!std::isfinite(resolution[axis])) {
+        refuse(format("the joints' efforts tell nothing about %s", axis_name(axis)));
+      }
+      coarsest = std::max(coarsest, resolution[axis]);
+    }
+    return coarsest;
+  }
+
   void fit_thresholds() {
     Task& task = fit_.task;
     ContactThresholds& t = task.motion.thresholds;
@@ -76,7 +130,8 @@ class Fitting {
     }
     if (task.force_limit_N > cell_.force_fault_N) {
       refuse(format("force_limit = %g N, must be at most the cell's faults.force_N = %g N",
-                    task.force_limit_N, cell_.force_fault_N));
+                    task.force_limit_N, cell_.force_fault_N) +
+             force_cause_);
     }
     ContactConditions conditions;
     conditions.friction_max = task.friction.high;
@@ -115,12 +170,12 @@ class Fitting {
     const double seconds = loop_.blind_s() + task.compliance.mass_kg / task.compliance.damping_Nspm;
     const double lowered_mps = (most_N - force_on_N) / (loop_.stiffness_Npm * seconds);
     if (!(lowered_mps >= kContactSpeedMin_mps)) {
-      refuse(
-          format("contact_mps would have to be %.3g for a peak force of at most %g of "
-                 "faults.force_N = %g N with force_on %g N, k_e = %g N/m and %.3g s to stop; "
-                 "must be at least %g",
-                 lowered_mps, kPeakShare, cell_.force_fault_N, force_on_N, loop_.stiffness_Npm,
-                 seconds, kContactSpeedMin_mps));
+      refuse(format("contact_mps would have to be %.3g for a peak force of at most %g of "
+                    "faults.force_N = %g N with force_on %g N, k_e = %g N/m and %.3g s to stop; "
+                    "must be at least %g",
+                    lowered_mps, kPeakShare, cell_.force_fault_N, force_on_N, loop_.stiffness_Npm,
+                    seconds, kContactSpeedMin_mps) +
+             force_cause_);
     }
     note(
         format("contact speed %g -> %.4g m/s: the peak force F_on + k_e v ((2 n + m + 3) T + "
@@ -143,6 +198,7 @@ class Fitting {
   const Cell& cell_;
   ContactLoop loop_;
   CellFit fit_;
+  std::string force_cause_;  // of thresholds that were raised, for whom they are too high then
 };
 
 }  // namespace

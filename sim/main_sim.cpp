@@ -99,14 +99,21 @@ Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer*
   return lateness;
 }
 
-void announce(const CommandLine& line, const CanBus& bus) {
+/// "listening on 127.0.0.1:29536", with the port that was free where 0 was asked for; "on" what is
+/// no server.
+std::string place(const std::string& uri, const CanBus& bus) {
   const std::uint16_t port = hw::listening_port(bus);
-  std::string where = line.can;
-  if (port != 0) {
-    const std::string address = where.substr(where.find("//") + 2);
-    where = address.substr(0, address.rfind(':')) + ":" + std::to_string(port);
+  if (port == 0) return "on " + uri;
+  const std::string address = uri.substr(uri.find("//") + 2);
+  return "listening on " + address.substr(0, address.rfind(':')) + ":" + std::to_string(port);
+}
+
+void announce(const CommandLine& line, const hw::BusUris& uris, hw::Buses& buses) {
+  std::string text = place(uris.arm, buses.arm());
+  if (buses.sensor() != nullptr) {
+    text = "arm: " + text + "\nsensor: " + place(uris.sensor, *buses.sensor());
   }
-  const std::string text = (port != 0 ? "listening on " : "on ") + where + "\n";
+  text += "\n";
   std::fputs(text.c_str(), stdout);
   std::fflush(stdout);
   if (!line.ready_file.empty()) write_file(line.ready_file, text);
@@ -174,12 +181,8 @@ void tell_who_waited_in_vain(const CommandLine& line, const std::vector<sim::Fau
   }
 }
 
-int simulate(const CommandLine& line) {
-  check_apart({{"--json", line.json}, {"--ready-file", line.ready_file}},
-              {{"--cell", line.cell}, {"--task", line.task}, {"--experiment", line.experiment}});
-  const Cell cell_file = load_cell(line.cell);
-  if (!line.eds.empty()) write_data_sheets(line.eds, cell_file.robot);
-  const Task task = load_task(line.task);
+/// Where the environment stands and what is wrong in the cell, as the command line has it.
+sim::VirtualCell::Options world_of(const CommandLine& line, const Task& task) {
   sim::VirtualCell::Options options;
   options.start = line.start;
   options.seed = line.seed.value_or(0);
@@ -198,29 +201,42 @@ int simulate(const CommandLine& line) {
       throw InputError("--twin " + twin + ": this node has a twin already");
     }
   }
+  return options;
+}
+
+int simulate(const CommandLine& line) {
+  check_apart({{"--json", line.json}, {"--ready-file", line.ready_file}},
+              {{"--cell", line.cell}, {"--task", line.task}, {"--experiment", line.experiment}});
+  Cell cell_file = load_cell(line.cell);
+  const hw::BusUris uris = hw::parse_bus_uris(line.can);
+  hw::settle_buses(uris, cell_file.robot);
+  if (!line.eds.empty()) write_data_sheets(line.eds, cell_file.robot);
+  const Task task = load_task(line.task);
+  sim::VirtualCell::Options options = world_of(line, task);
   if (!line.json.empty()) check_writable(line.json);
   sim::FaultPhases phases;
   options.phases = &phases;
   const std::unique_ptr<sim::StepListener> steps = listen_for_steps(line, options.faults, phases);
   sim::VirtualCell cell(cell_file, task, options);
 
-  const std::unique_ptr<CanBus> bus = hw::open_bus(line.can, cell_file.robot.bitrate_bps);
-  const auto* server = dynamic_cast<const hw::SlcanServer*>(bus.get());
+  hw::Buses buses(uris, cell_file.robot);
+  // Whoever runs the arm is on the arm's bus, whatever else there is.
+  const auto* server = dynamic_cast<const hw::SlcanServer*>(&buses.arm());
   if (line.once && server == nullptr) {
     throw InputError("--once: needs a bus with clients, such as --can slcan-listen://127.0.0.1:0");
   }
   raise_priority();
   stop_on_signals(stop_requested);
-  announce(line, *bus);
-  sim::FaultyBus faulty_bus(*bus, options.faults, cell_file.robot.master_node, monotonic_now_ns(),
-                            &phases);
+  announce(line, uris, buses);
+  sim::FaultyBus faulty_bus(buses.all(), options.faults, cell_file.robot.master_node,
+                            monotonic_now_ns(), &phases);
   const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr, steps.get());
 
   sim::Truth truth = cell.truth();
   truth.wakes = lateness.wakes;
   truth.wakes_late = lateness.late;
   truth.late_max_ms = static_cast<double>(lateness.max_ns) * 1e-6;
-  truth.frames_lost = bus->status().send_failures;
+  truth.frames_lost = buses.all().status().send_failures;
   std::fputs(sim::describe(truth).c_str(), stdout);
   std::printf("simulated %.1f s; woke late by more than 1 ms %llu of %llu times, worst %.2f ms\n",
               truth.time_s, static_cast<unsigned long long>(truth.wakes_late),
@@ -251,7 +267,10 @@ int parse_and_simulate(int argc, char** argv) {
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--cell", line.cell, "cell file")->required();
   app.add_option("--task", line.task, "task file: held part, environment, starts")->required();
-  app.add_option("--can", line.can, "bus; slcan-listen://HOST:PORT serves it, port 0: a free one")
+  app.add_option(
+         "--can", line.can,
+         "bus; slcan-listen://HOST:PORT serves it, port 0: a free one; arm=URI,sensor=URI for a "
+         "force/torque sensor with a bus of its own")
       ->required();
   app.add_option("--start", line.start, "where the tool stands; default: the task's first start");
   CLI::Option* seed = app.add_option(

@@ -1,9 +1,11 @@
 #include "executor/dry_run/dry_run_report.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "executor/dry_run/start_positions.h"
 #include "shared/base/text.h"
+#include "shared/joint_torque/torque_map.h"
 
 namespace tenon::executor {
 namespace {
@@ -25,18 +27,29 @@ std::string line(const StepDemand& step, const Cell& cell) {
                 step.slow_down);
 }
 
+/// N and Nm; null where the arm tells nothing.
+Json resolution_json(const Vector6& resolution) {
+  Json json = Json::array();
+  for (const double value : resolution) {
+    json.push_back(std::isfinite(value) ? Json(value) : Json());
+  }
+  return json;
+}
+
 Json json_of(const StepDemand& step, const Cell& cell) {
-  return {{"step", step.step},
-          {"points", step.points},
-          {"limit_joint", joint_of(cell, step.limit).name},
-          {"limit_position", step.limit_position},
-          {"limit_margin", step.limit.value},
-          {"speed_joint", joint_of(cell, step.speed).name},
-          {"speed_share", step.speed.value},
-          {"acceleration_joint", joint_of(cell, step.acceleration).name},
-          {"acceleration_share", step.acceleration.value},
-          {"conditioning", step.conditioning},
-          {"slow_down", step.slow_down}};
+  Json json = {{"step", step.step},
+               {"points", step.points},
+               {"limit_joint", joint_of(cell, step.limit).name},
+               {"limit_position", step.limit_position},
+               {"limit_margin", step.limit.value},
+               {"speed_joint", joint_of(cell, step.speed).name},
+               {"speed_share", step.speed.value},
+               {"acceleration_joint", joint_of(cell, step.acceleration).name},
+               {"acceleration_share", step.acceleration.value},
+               {"conditioning", step.conditioning},
+               {"slow_down", step.slow_down}};
+  if (cell.joint_torque) json["resolution"] = resolution_json(step.resolution);
+  return json;
 }
 
 }  // namespace
@@ -52,6 +65,7 @@ std::string to_table(const DryRun& run, const Cell& cell) {
       "step  nearest limit            margin   fastest joint        most accelerated     "
       "condit.  slow-down\n";
   for (const StepDemand& step : run.steps) text += line(step, cell);
+  text += resolved_steps(run, cell);
   for (const std::string& refusal : run.refusals) text += "refused: " + refusal + "\n";
   return text;
 }
@@ -71,6 +85,16 @@ std::string to_json(const DryRun& run, const Plan& plan, const Cell& cell) {
   json["steps"] = Json::array();
   for (const StepDemand& step : run.steps) json["steps"].push_back(json_of(step, cell));
   return json.dump(2) + "\n";
+}
+
+std::string resolved_steps(const DryRun& run, const Cell& cell) {
+  std::string text;
+  if (!cell.joint_torque) return text;
+  for (const StepDemand& step : run.steps) {
+    text += format("step %d: the joints' efforts resolve ", static_cast<int>(step.step)) +
+            resolution_text(step.resolution) + "\n";
+  }
+  return text;
 }
 
 std::string slowed_steps(const DryRun& run, const Cell& cell) {

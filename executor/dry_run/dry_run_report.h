@@ -16,6 +16,9 @@ namespace tenon::executor {
 /// The same; README.md names the keys.
 [[nodiscard]] std::string to_json(const DryRun& run, const Plan& plan, const Cell& cell);
 
+/// Where the joints' efforts tell the force, a line for each step: how finely, by axis.
+[[nodiscard]] std::string resolved_steps(const DryRun& run, const Cell& cell);
+
 /// "step 3 runs at 0.62 of its speed: ...", a line a slowed step; empty where none is.
 [[nodiscard]] std::string slowed_steps(const DryRun& run, const Cell& cell);
 

@@ -23,6 +23,7 @@ class Checker {
   }
 
   std::vector<std::string> run() {
+    check_friction();
     check_latency();
     check_compliance();
     if (turns()) check_turning();
@@ -34,6 +35,14 @@ class Checker {
 
  private:
   void refuse(std::string why) { refusals_.push_back(std::move(why)); }
+
+  void check_friction() {
+    if (!cell_.joint_torque || !cell_.joint_torque->joints.empty()) return;
+    refuse(
+        "the joints' efforts are to tell the force, and friction of the drives is not known; let "
+        "tenon-exec --identify-friction FILE write it, and name it: joint_torque: {friction: "
+        "FILE}");
+  }
 
   void check_latency() {
     if (loop_.latency_s() <= plan_.latency_max_s * kPlanRounding) return;

@@ -32,7 +32,9 @@ StepWalk::StepWalk(const Plan& plan, std::size_t step, const StepReach& reach, c
       cell_(cell),
       kinematics_(kinematics),
       follower_(kinematics, plan.start),
-      ends_(reach.ends.size()) {
+      ends_(reach.ends.size()),
+      compliant_axes_(plan.compliance.compliant_axes) {
+  if (cell.joint_torque) torque_map_.emplace(cell);
   demand_.step = step;
   find_ways();
 }
@@ -122,6 +124,10 @@ bool StepWalk::walk_edges(const JointVector& middle) {
 
 void StepWalk::visit(const JointVector& joints) {
   ++demand_.points;
+  if (torque_map_) {
+    const Vector6 here = TorqueMap::resolution(torque_map_->at(joints), effort_uncertainty(cell_));
+    demand_.resolution = demand_.resolution.cwiseMax(here);
+  }
   demand_.conditioning = std::min(demand_.conditioning, kinematics_.conditioning(joints));
   if (ways_.empty()) visited_.push_back({joints, {}});
   for (const Way& way : ways_) look_at_rates(joints, way);
@@ -173,6 +179,31 @@ std::optional<std::string> StepWalk::verdict(bool walked) const {
            asked_for(demand_, cell_);
   }
   if (demand_.slow_down < kSlowDownMin) return too_fast();
+  return too_coarse();
+}
+
+// A contact that is held has to be told from none: off-thresholds are the finest that a step asks.
+std::optional<std::string> StepWalk::too_coarse() const {
+  if (!torque_map_) return std::nullopt;
+  const std::uint8_t axes = compliant_axes_ & set_.sensed_axes;
+  for (int axis = 0; axis < 6; ++axis) {
+    if ((axes >> axis & 1U) == 0) continue;
+    const ContactThresholds& t = set_.thresholds;
+    const double asked = axis < 3 ? t.force_off_N : t.torque_off_Nm;
+    const double possible = demand_.resolution[axis];
+    if (possible <= asked * kPlanRounding) continue;
+    const char* unit = axis < 3 ? "N" : "Nm";
+    if (!std::isfinite(possible)) {
+      return format(
+          "the joints' efforts tell nothing about %s, where the step senses; plan with "
+          "--cell, or give the cell a sensor",
+          axis_name(axis));
+    }
+    return format(
+        "%s_off = %g %s along %s, the joints' efforts resolve %.3g %s there: must be at "
+        "least that; plan with --cell",
+        axis < 3 ? "force" : "torque", asked, unit, axis_name(axis), possible, unit);
+  }
   return std::nullopt;
 }
 

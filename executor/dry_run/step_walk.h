@@ -8,6 +8,7 @@
 // same joints: else the box holds a singularity, whatever the grid saw.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "executor/dry_run/path_follower.h"
 #include "executor/dry_run/plan_reach.h"
 #include "shared/cell/cell.h"
+#include "shared/joint_torque/torque_map.h"
 #include "shared/plan/plan.h"
 
 namespace tenon::executor {
@@ -35,6 +37,9 @@ struct StepDemand {
   JointExtreme speed;           ///< share of the joint's speed_max at the plan's own speeds
   JointExtreme acceleration;    ///< share of its acceleration_max
   double conditioning = 1.0;    ///< ToolKinematics::conditioning(), smallest
+  /// Where the joints' efforts tell the force: what they resolve of it, N and Nm, task axes, at the
+  /// worst point; else 0.
+  Vector6 resolution = Vector6::Zero();
   /// What the plan's speeds are multiplied by (slow_down.h), so that no joint is asked for more
   /// than kShareMax of its own.
   double slow_down = 1.0;
@@ -88,6 +93,7 @@ class StepWalk {
   [[nodiscard]] std::string lost_way() const;
   [[nodiscard]] std::string too_close() const;
   [[nodiscard]] std::string too_fast() const;
+  [[nodiscard]] std::optional<std::string> too_coarse() const;
   [[nodiscard]] const Joint& joint(int index) const {
     return cell_.robot.joints[static_cast<std::size_t>(index)];
   }
@@ -98,10 +104,12 @@ class StepWalk {
   const Cell& cell_;
   const ToolKinematics& kinematics_;
   PathFollower follower_;
+  std::optional<TorqueMap> torque_map_;  ///< where the joints' efforts tell the force
   PathFollower::Failure failure_;
   std::vector<Way> ways_;
   std::vector<Moving> visited_;
   std::vector<JointVector> ends_;
+  std::uint8_t compliant_axes_;
   StepDemand demand_;
 };
 

@@ -30,7 +30,24 @@ class ContactIdentificationRun : public Identification {
   IdentifyContactMotion motion_;
 };
 
+class FrictionIdentificationRun : public Identification {
+ public:
+  explicit FrictionIdentificationRun(const Cell& cell) : motion_(cell, {}) {}
+  IdentificationMotion& motion() override { return motion_; }
+  [[nodiscard]] Finding finding() const override {
+    const Robot& robot = motion_.cell().robot;
+    return finding_of(robot, identify_friction(robot, motion_.samples()));
+  }
+
+ private:
+  IdentifyFrictionMotion motion_;
+};
+
 }  // namespace
+
+std::unique_ptr<Identification> make_friction_identification(const Cell& cell) {
+  return std::make_unique<FrictionIdentificationRun>(cell);
+}
 
 std::unique_ptr<Identification> make_payload_identification(const Cell& cell) {
   return std::make_unique<PayloadIdentificationRun>(cell);

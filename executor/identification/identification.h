@@ -8,6 +8,7 @@
 #include "executor/identification/finding.h"
 #include "executor/identification/identification_motion.h"
 #include "executor/identification/identify_contact_motion.h"
+#include "executor/identification/identify_friction_motion.h"
 #include "executor/identification/identify_payload_motion.h"
 #include "shared/cell/cell.h"
 
@@ -24,6 +25,9 @@ class Identification {
   /// Once the motion has ended with kMeasured.
   [[nodiscard]] virtual Finding finding() const = 0;
 };
+
+/// @throws InputError for a cell without joint_torque
+[[nodiscard]] std::unique_ptr<Identification> make_friction_identification(const Cell& cell);
 
 [[nodiscard]] std::unique_ptr<Identification> make_payload_identification(const Cell& cell);
 

@@ -49,7 +49,7 @@ bool went_well(EndReason reason) {
 }  // namespace
 
 ControlTask::ControlTask(const Cell& cell, const Parameters& parameters)
-    : cell_(cell),
+    : cell_(sensed_cell(cell)),
       parameters_(parameters),
       cycle_s_(1e-6 * cell.robot.cycle_us),
       cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us),
@@ -59,11 +59,14 @@ ControlTask::ControlTask(const Cell& cell, const Parameters& parameters)
       drift_watch_(drift_parameters(cell.robot.sensor, sensor_tare_, parameters.tare_samples)),
       brake_watch_(cell_.robot, parameters.brakes),
       joints_(cell_.robot, kinematics_) {
+  if (cell.joint_torque) joint_torque_.emplace(cell);
   parameters_.quick_stop_s = std::max(parameters_.quick_stop_s, time_to_rest_s(cell_.robot));
 }
 
-ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& feedback) noexcept {
+ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& heard) noexcept {
   motion_ns_ += cycle_ns_;
+  ArmFeedback feedback = heard;
+  if (joint_torque_) joint_torque_->feel(feedback);
   if (const auto ending = supervision_.update(feedback, following())) take(*ending);
   follow_brakes(feedback);
   if (stop_requested_) take(Ending{.reason = EndReason::kStopRequested});
@@ -263,7 +266,9 @@ ControlTask::Turn ControlTask::end_tare() {
     drift_.reset();
     return {};
   }
-  if (const auto pushed = supervision_.tare(sensor_tare_.mean())) return *pushed;
+  const Vector6& mean = sensor_tare_.mean();
+  const Vector6 zero = joint_torque_ ? joint_torque_->settle(mean) : mean;
+  if (const auto pushed = supervision_.tare(zero)) return *pushed;
   drift_watch_.restart();
   return Event::kTared;
 }
@@ -351,6 +356,7 @@ void ControlTask::write_record(std::int64_t now_ns, const ArmFeedback& feedback,
   r.arm_state = feedback.state;
   r.request = command.request;
   r.end_reason = static_cast<std::uint8_t>(ending_.reason);
+  r.arm_fault = ending_.arm_fault;
   r.slip = ending_.slip;
   r.brakes_unwatched = ending_.brakes_unwatched;
   r.wrench_fresh = supervision_.wrench_usable();

@@ -21,6 +21,7 @@
 #include "executor/record/cycle_record.h"
 #include "executor/sensing/brake_watch.h"
 #include "executor/sensing/drift_watch.h"
+#include "executor/sensing/joint_torque_wrench.h"
 #include "executor/sensing/sensor_tare.h"
 #include "executor/states/ending.h"
 #include "executor/states/state_machine.h"
@@ -57,7 +58,7 @@ class ControlTask {
 
   /// One cycle. @param now_ns monotonic, for the record; motion goes by the cycle count, so a late
   /// cycle stretches the motion and never makes it jump.
-  [[nodiscard]] Command cycle(std::int64_t now_ns, const ArmFeedback& feedback) noexcept;
+  [[nodiscard]] Command cycle(std::int64_t now_ns, const ArmFeedback& heard) noexcept;
 
   /// Ends the run: on the user's request, because the loop is too late, or the bus too bad.
   void request_stop() noexcept { stop_requested_ = true; }
@@ -88,7 +89,7 @@ class ControlTask {
   [[nodiscard]] double peak_torque_Nm() const noexcept { return supervision_.peak_torque_Nm(); }
 
  protected:
-  /// Copies the cell. @throws InputError for a robot without joints
+  /// Copies the cell, as sensed_cell(). @throws InputError for a robot without joints
   ControlTask(const Cell& cell, const Parameters& parameters);
 
   /// What a state came to in a cycle: nothing yet, what leads to the next one, or the run's end.
@@ -126,6 +127,10 @@ class ControlTask {
   [[nodiscard]] const ToolKinematics& kinematics() const { return kinematics_; }
   [[nodiscard]] const Supervision& supervision() const { return supervision_; }
   [[nodiscard]] JointCommand& joints() { return joints_; }
+  /// Where the joints' efforts tell the force; else null.
+  [[nodiscard]] const JointTorqueWrench* joint_torque() const {
+    return joint_torque_ ? &*joint_torque_ : nullptr;
+  }
   [[nodiscard]] const JointCommand& joints() const { return joints_; }
 
  private:
@@ -156,6 +161,7 @@ class ControlTask {
   double cycle_s_;
   std::int64_t cycle_ns_;
   ToolKinematics kinematics_;
+  std::optional<JointTorqueWrench> joint_torque_;
   Supervision supervision_;
   SensorTare sensor_tare_;
   int unsteady_tares_ = 0;

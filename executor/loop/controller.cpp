@@ -10,8 +10,9 @@ namespace tenon::executor {
 namespace {
 
 // Half of what holds a contact: a zero that is off by less, the thresholds have room for. And
-// nothing that noise may make.
-ZeroWatch::Parameters zero_parameters(const Plan& plan, const Cell& cell, double window_s) {
+// nothing that noise may make, or that joints do not resolve.
+ZeroWatch::Parameters zero_parameters(const Plan& plan, const Cell& cell, double window_s,
+                                      const Vector6& resolution) {
   constexpr int kSamplesLeast = 20;
   ZeroWatch::Parameters p;
   p.samples = std::max(kSamplesLeast, static_cast<int>(window_s / sample_period_s(cell.robot)));
@@ -25,6 +26,7 @@ ZeroWatch::Parameters zero_parameters(const Plan& plan, const Cell& cell, double
       std::max(0.5 * t.torque_off_Nm,
                share * (noise.torque_deviation_max_Nm + lever_m * noise.force_deviation_max_N));
   p.bound << Vector3::Constant(force_N), Vector3::Constant(torque_Nm);
+  p.bound = p.bound.cwiseMax(resolution);
   return p;
 }
 
@@ -38,7 +40,9 @@ Controller::Controller(const Cell& cell, const DryRun& dry_run, const Parameters
       parameters_(parameters),
       tool_(plan_.compliance),
       runner_(plan_),
-      zero_watch_(zero_parameters(plan_, ControlTask::cell(), parameters.hold_s)) {}
+      zero_watch_(zero_parameters(
+          plan_, ControlTask::cell(), parameters.hold_s,
+          dry_run.steps.empty() ? Vector6(Vector6::Zero()) : dry_run.steps.back().resolution)) {}
 
 // --- states ---------------------------------------------------------------------------------
 

@@ -46,7 +46,8 @@ struct CycleRecord {
   ArmState arm_state = ArmState::kUnconfigured;
   ArmRequest request = ArmRequest::kDisabled;
   std::uint8_t end_reason = 0;
-  BrakeSlip slip;                      ///< of the Ending, as the next
+  ArmFault arm_fault;  ///< of the Ending, as the next two
+  BrakeSlip slip;
   std::uint32_t brakes_unwatched = 0;  ///< bit i: of joint i
 
   // What the guarded move got and gave; valid while a move runs (moving).

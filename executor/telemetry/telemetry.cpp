@@ -4,7 +4,10 @@
 #include <lcm/lcm-cpp.hpp>
 #include <utility>
 
+#include "executor/telemetry/setup_message.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
+#include "lcmtypes/tenon/run_setup_t.hpp"
+#include "lcmtypes/tenon/run_status_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"
 #include "shared/base/error.h"
@@ -13,6 +16,9 @@
 
 namespace tenon::executor {
 namespace {
+
+constexpr std::int64_t kSetupPeriod_ns = 1'000'000'000;
+constexpr std::int64_t kStatusPeriod_ns = 100'000'000;
 
 void fill(const PoseData& pose, double (&position_m)[3], double (&orientation_wxyz)[4]) {
   std::copy(pose.position_m.begin(), pose.position_m.end(), position_m);
@@ -43,9 +49,20 @@ TelemetryOutputs open_telemetry(const std::string& url, const std::filesystem::p
   return outputs;
 }
 
-Telemetry::Telemetry(TelemetryOutputs outputs, std::size_t joint_count, const PlanRunner* steps,
-                     const Recorder& recorder)
-    : outputs_(std::move(outputs)), joint_count_(joint_count), steps_(steps), recorder_(recorder) {}
+Telemetry::Telemetry(TelemetryOutputs outputs, const Cell& cell, const PlanRunner* steps,
+                     const Recorder& recorder, BusView bus)
+    : outputs_(std::move(outputs)),
+      joint_count_(cell.robot.joints.size()),
+      bitrate_bps_(cell.robot.bitrate_bps),
+      steps_(steps),
+      recorder_(recorder),
+      bus_(std::move(bus)),
+      setup_(std::make_unique<tenon::run_setup_t>(
+          setup_message(cell, steps == nullptr ? nullptr : &steps->plan()))) {
+  setup_->bus_load_most = bus_.load_most;
+}
+
+Telemetry::~Telemetry() = default;
 
 template <typename Message>
 void Telemetry::publish(const char* channel, const Message& message) {
@@ -58,7 +75,15 @@ void Telemetry::publish(const char* channel, const Message& message) {
 }
 
 void Telemetry::consume(const CycleRecord& record) {
+  if (record.sequence == 0 || record.time_ns - setup_told_ns_ >= kSetupPeriod_ns) {
+    publish_setup_at(record.time_ns);
+  }
   publish_cycle(record);
+  const bool changed = record.awaited_step != awaited_told_ ||
+                       (record.pace <= 0.0) != paused_told_ || record.end_reason != end_told_;
+  if (changed || statuses_ == 0 || record.time_ns - status_told_ns_ >= kStatusPeriod_ns) {
+    publish_status(record);
+  }
   while (steps_ != nullptr && steps_published_ < record.steps_done)
     publish_step(record, steps_published_++);
 }
@@ -67,6 +92,43 @@ const RecordReport* Telemetry::close_log() {
   if (outputs_.log == nullptr) return nullptr;
   outputs_.log->close();
   return &outputs_.log->report();
+}
+
+void Telemetry::publish_setup_at(std::int64_t time_ns) {
+  setup_told_ns_ = time_ns;
+  setup_->utime = wall_clock_us();
+  setup_->monotonic_ns = time_ns;
+  publish(kSetupChannel, *setup_);
+  ++setup_->sequence;
+}
+
+void Telemetry::publish_status(const CycleRecord& record) {
+  status_told_ns_ = record.time_ns;
+  awaited_told_ = record.awaited_step;
+  paused_told_ = record.pace <= 0.0;
+  end_told_ = record.end_reason;
+  tenon::run_status_t message{};
+  message.utime = wall_clock_us();
+  message.sequence = statuses_++;
+  message.monotonic_ns = record.time_ns;
+  message.awaited_step = static_cast<std::int16_t>(record.awaited_step);
+  message.pace = record.pace;
+  message.arm_fault = static_cast<std::int8_t>(record.arm_fault.kind);
+  message.arm_fault_node = record.arm_fault.node;
+  message.slipped_joint = static_cast<std::int8_t>(record.slip.joint);
+  message.slipped = record.slip.moved;
+  message.brakes_unwatched = static_cast<std::int32_t>(record.brakes_unwatched);
+  if (bus_.traffic) {
+    const CanBusTraffic traffic = bus_.traffic();
+    const std::int64_t now_ns = monotonic_now_ns();
+    const bool first = traffic_read_ns_ == 0;
+    tell_bus(traffic, traffic_told_,
+             first ? 0.0 : 1e-9 * static_cast<double>(now_ns - traffic_read_ns_), bitrate_bps_,
+             message);
+    traffic_told_ = traffic;
+    traffic_read_ns_ = now_ns;
+  }
+  publish(kStatusChannel, message);
 }
 
 void Telemetry::publish_cycle(const CycleRecord& record) {

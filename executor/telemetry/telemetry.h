@@ -1,10 +1,12 @@
 #pragma once
-// Publishes a run over LCM: every cycle, every finished step, and a summary. Outbound only; nothing
-// that arrives over LCM can move the arm. Lives on the recorder's thread, never on the real-time
-// one: publishing allocates, locks and may block.
+// Publishes a run over LCM: what it is measured by, every cycle, what cycles do not tell, every
+// finished step, and a summary. Outbound only; nothing that arrives over LCM can move the arm.
+// Lives on the recorder's thread, never on the real-time one: publishing allocates, locks and may
+// block.
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,9 +15,15 @@
 #include "executor/telemetry/event_log.h"
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
+#include "shared/cell/cell.h"
+#include "shared/ports/can_bus.h"
 
 namespace lcm {
 class LCM;
+}
+
+namespace tenon {
+class run_setup_t;
 }
 
 namespace tenon::executor {
@@ -24,6 +32,8 @@ inline constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
 inline constexpr const char* kCycleChannel = "TENON_CYCLE";
 inline constexpr const char* kStepChannel = "TENON_STEP";
 inline constexpr const char* kRunChannel = "TENON_RUN";
+inline constexpr const char* kSetupChannel = "TENON_SETUP";
+inline constexpr const char* kStatusChannel = "TENON_STATUS";
 
 /// Where telemetry goes to; either may be missing.
 struct TelemetryOutputs {
@@ -38,13 +48,22 @@ struct TelemetryOutputs {
                                               const std::filesystem::path& log,
                                               std::vector<std::string>& warnings);
 
+/// What telemetry tells of the bus.
+struct BusView {
+  std::function<CanBusTraffic()> traffic{};  ///< called on the recorder's thread; empty: not known
+  double load_most = 1.0;                    ///< fraction of the bus that its frames may take
+};
+
 class Telemetry : public RecordConsumer {
  public:
   /// @param steps of the plan that runs, null where none does  @param recorder whose losses are
   /// told; both outlive this
-  Telemetry(TelemetryOutputs outputs, std::size_t joint_count, const PlanRunner* steps,
-            const Recorder& recorder);
+  Telemetry(TelemetryOutputs outputs, const Cell& cell, const PlanRunner* steps,
+            const Recorder& recorder, BusView bus = {});
+  ~Telemetry() override;
 
+  /// What the run is measured by; before the recorder's thread begins.
+  void publish_setup() { publish_setup_at(0); }
   void consume(const CycleRecord& record) override;
   void publish_summary(const RunResult& result, const CycleRecord& last);
 
@@ -54,6 +73,8 @@ class Telemetry : public RecordConsumer {
   [[nodiscard]] const RecordReport* close_log();
 
  private:
+  void publish_setup_at(std::int64_t time_ns);
+  void publish_status(const CycleRecord& record);
   void publish_cycle(const CycleRecord& record);
   void publish_step(const CycleRecord& record, std::size_t index);
   template <typename Message>
@@ -61,8 +82,19 @@ class Telemetry : public RecordConsumer {
 
   TelemetryOutputs outputs_;
   std::size_t joint_count_;
+  std::uint32_t bitrate_bps_;
   const PlanRunner* steps_;
   const Recorder& recorder_;
+  BusView bus_;
+  std::unique_ptr<tenon::run_setup_t> setup_;
+  std::int64_t setup_told_ns_ = 0;
+  std::int64_t status_told_ns_ = 0;
+  std::int64_t statuses_ = 0;
+  std::int32_t awaited_told_ = -1;
+  bool paused_told_ = false;
+  std::uint8_t end_told_ = 0;
+  CanBusTraffic traffic_told_;
+  std::int64_t traffic_read_ns_ = 0;
   std::size_t steps_published_ = 0;
   std::uint64_t failures_ = 0;
 };

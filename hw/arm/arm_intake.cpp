@@ -100,6 +100,7 @@ bool ArmIntake::take_process_data(const ReceivedFrame& received) noexcept {
   if (take_wrench_frame(received)) {
     return true;
   }
+  if (frame.bus != kArmBus) return false;
   const auto ids = std::span(feedback_ids_).first(joints_.size());
   const auto found = std::find(ids.begin(), ids.end(), frame.id);
   if (found == ids.end()) {

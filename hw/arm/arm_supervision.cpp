@@ -89,9 +89,9 @@ void ArmSupervision::raise_of_drive(ArmFaultKind kind, std::size_t joint) noexce
 void ArmSupervision::check_bus(const CanBusStatus& status) noexcept {
   // Bus-off first: it says why the bus is down.
   if (status.bus_off) {
-    raise({ArmFaultKind::kBusOff, 0, 0, 0});
+    raise({ArmFaultKind::kBusOff, 0, 0, status.failed_bus});
   } else if (!status.up) {
-    raise({ArmFaultKind::kBusDown, 0, 0, 0});
+    raise({ArmFaultKind::kBusDown, 0, 0, status.failed_bus});
   }
 }
 

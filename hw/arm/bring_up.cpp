@@ -223,7 +223,7 @@ void BringUp::command_all(std::uint8_t command, CanBus& bus) {
 void BringUp::send(const CanFrame& frame, CanBus& bus) {
   // A full queue shows as a node that does not answer; only a dead bus is worth naming.
   if (bus.send(frame) == SendResult::kDown) {
-    fail({ArmFaultKind::kBusDown, 0, 0, 0});
+    fail({ArmFaultKind::kBusDown, 0, 0, bus.status().failed_bus});
   }
 }
 

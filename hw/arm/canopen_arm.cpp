@@ -23,14 +23,14 @@ std::vector<JointChannel> channels_of(const Robot& robot) {
 }  // namespace
 
 CanopenArm::CanopenArm(const Robot& robot, CanBus& bus)
-    : bus_(bus),
-      robot_(checked(robot)),
+    : robot_(checked(robot)),
+      bus_(robot_, bus, counters_),
       bring_up_(robot_),
       joints_(channels_of(robot)),
       sensor_(open_sensor(robot.sensor)),
       supervision_(robot, joints_, counters_),
       intake_(robot, joints_, *sensor_.source, supervision_, counters_),
-      output_(robot, bus, joints_, supervision_, counters_) {}
+      output_(robot, bus_, joints_, supervision_, counters_) {}
 
 std::vector<std::string> CanopenArm::notes() const {
   std::vector<std::string> lines;

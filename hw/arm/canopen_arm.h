@@ -1,5 +1,6 @@
 #pragma once
-// An arm of CiA 402 drives and a force/torque sensor on one CAN bus, behind the arm port.
+// An arm of CiA 402 drives and a force/torque sensor on one CAN bus, or on one each, behind the arm
+// port.
 //
 // prepare() brings all nodes up (hw/arm/bring_up.h), then a sensor that is none
 // (hw/sensors/sensor_start.h). After that a cycle is
@@ -27,6 +28,7 @@
 #include <string>
 #include <vector>
 
+#include "hw/arm/arm_bus.h"
 #include "hw/arm/arm_counters.h"
 #include "hw/arm/arm_intake.h"
 #include "hw/arm/arm_output.h"
@@ -70,10 +72,10 @@ class CanopenArm : public DeviceArm {
   /// @param setpoints_wait setpoints have left that act with the next SYNC
   void stop_if_due(bool setpoints_wait) noexcept;
 
-  CanBus& bus_;
   const Robot robot_;
-  BringUp bring_up_;
   Counters counters_;
+  ArmBus bus_;
+  BringUp bring_up_;
   std::vector<JointChannel> joints_;  ///< of a fixed size: the parts below look into it
   SensorDevice sensor_;
   ArmSupervision supervision_;

@@ -22,17 +22,24 @@ namespace {
 using canopen::ObjectSetting;
 
 std::string node_name(std::uint8_t node, const Robot& robot) {
-  if (node == 0 && robot.sensor.node == 0) return sensor_name(robot.sensor);
+  if (node == 0 && robot.sensor.node == 0 && !robot.sensor.absent())
+    return sensor_name(robot.sensor);
   std::string owner = "not of this robot";
   for (const Joint& joint : robot.joints) {
     if (joint.node == node) owner = joint.name;
   }
-  if (robot.sensor.node == node) owner = "force/torque sensor";
+  if (robot.sensor.node == node && node != 0) owner = "force/torque sensor";
   return format("node %u (", static_cast<unsigned>(node)) + owner + "): ";
 }
 
 std::string node_name(const ArmFault& fault, const Robot& robot) {
   return node_name(fault.node, robot);
+}
+
+/// " of the arm" where there are two to tell apart.
+std::string whose_bus(const ArmFault& fault, const Robot& robot) {
+  if (!robot.sensor.has_own_bus()) return "";
+  return fault.code == kSensorBus ? " of the force/torque sensor" : " of the arm";
 }
 
 std::string object_name(std::uint32_t object) {
@@ -262,7 +269,8 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
     case ArmFaultKind::kSensorInvalid:
       return node_name(fault, robot) + sensor_invalid(fault, robot);
     case ArmFaultKind::kBusDown:
-      return "the CAN bus is gone (interface down or connection closed); check the adapter, or "
+      return "the CAN bus" + whose_bus(fault, robot) +
+             " is gone (interface down or connection closed); check the adapter, or "
              "that the other end still runs";
     case ArmFaultKind::kOtherMaster:
       return format("another master runs on this bus: 0x%03X (%s) came from it; stop it first",
@@ -281,8 +289,8 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
     case ArmFaultKind::kSetpointUnsent:
       return node_name(fault, robot) + setpoint(fault);
     case ArmFaultKind::kBusOff:
-      return "the CAN controller went bus-off (too many errors); check wiring, termination and "
-             "bit rate";
+      return "the CAN controller" + whose_bus(fault, robot) +
+             " went bus-off (too many errors); check wiring, termination and bit rate";
   }
   return "unknown fault";
 }

@@ -128,7 +128,8 @@ std::string sensor_name(const ForceTorqueSensor& sensor) {
 }
 
 std::optional<std::string> describe_sensor(const ArmFault& fault, const ForceTorqueSensor& sensor) {
-  if (sensor.protocol == SensorProtocol::kNode || fault.node != 0) return std::nullopt;
+  const bool node = sensor.protocol == SensorProtocol::kNode;
+  if (node || sensor.absent() || fault.node != 0) return std::nullopt;
   const std::string name = sensor_name(sensor);
   const bool ati = sensor.protocol == SensorProtocol::kAtiNetcanoem;
   if (fault.kind == ArmFaultKind::kNoAnswer) {
@@ -148,6 +149,8 @@ std::optional<std::string> describe_sensor(const ArmFault& fault, const ForceTor
 }
 
 std::string describe_start(const ForceTorqueSensor& sensor) {
+  if (sensor.absent())
+    return "no force/torque sensor: the joints' efforts (6077h) tell the force\n";
   if (sensor.protocol == SensorProtocol::kNode) return {};
   std::string text = sensor_name(sensor);
   if (sensor.protocol == SensorProtocol::kRobotousRft) {

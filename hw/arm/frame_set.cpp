@@ -58,6 +58,7 @@ void add_packed_commands(const Robot& robot, Frames& frames) {
 std::vector<BusFrame> sensor_frames(const Robot& robot) {
   constexpr std::uint32_t kFull = 8;
   const ForceTorqueSensor& sensor = robot.sensor;
+  if (sensor.absent()) return {};
   if (sensor.protocol == SensorProtocol::kNode) {
     const auto feedback = CyclePart::kFeedback;
     return {{"force", kForceCobId, kFull, sensor.node, feedback, robot.cycle_us},
@@ -66,8 +67,10 @@ std::vector<BusFrame> sensor_frames(const Robot& robot) {
   if (sensor.protocol == SensorProtocol::kAtiNetcanoem) {
     constexpr std::uint32_t kSecondBytes = 6;
     const auto feedback = CyclePart::kFeedback;
-    return {{"request of the sensor", sensor.request_id, 0, robot.master_node, feedback,
-             robot.cycle_us},
+    BusFrame request{"request of the sensor", sensor.request_id, 0,
+                     robot.master_node,       feedback,          robot.cycle_us};
+    request.bus = sensor.bus();
+    return {std::move(request),
             {"gauges 0 2 4", sensor.sample_ids[0], kFull, 0, feedback, robot.cycle_us},
             {"gauges 1 3 5", sensor.sample_ids[1], kSecondBytes, 0, feedback, robot.cycle_us}};
   }
@@ -76,6 +79,24 @@ std::vector<BusFrame> sensor_frames(const Robot& robot) {
       static_cast<std::uint32_t>(kMicrosecondsPerSecond / std::uint32_t(sensor.rate_hz));
   return {{"force", sensor.sample_ids[0], kFull, 0, CyclePart::kAnytime, period_us},
           {"torque", sensor.sample_ids[1], kFull, 0, CyclePart::kAnytime, period_us}};
+}
+
+std::vector<BusFrame> with_own_bus(std::vector<BusFrame> frames, const Robot& robot) {
+  const ForceTorqueSensor& sensor = robot.sensor;
+  if (!sensor.has_own_bus()) return frames;
+  std::vector<BusFrame> twice;
+  for (BusFrame& frame : frames) {
+    const bool to_all = frame.id == tenon::canopen::kSync ||
+                        frame.id == tenon::canopen::kHeartbeat + robot.master_node;
+    if (frame.node == sensor.node) {
+      frame.bus = kSensorBus;
+    } else if (sensor.node != 0 && to_all) {
+      twice.push_back(frame);
+      twice.back().bus = kSensorBus;
+    }
+  }
+  frames.insert(frames.end(), twice.begin(), twice.end());
+  return frames;
 }
 
 std::vector<BusFrame> frame_set(const Robot& robot) {
@@ -102,7 +123,7 @@ std::vector<BusFrame> frame_set(const Robot& robot) {
     frames.heartbeat("the sensor", robot.sensor.node, CyclePart::kAnytime);
   }
   frames.heartbeat("the master", robot.master_node, CyclePart::kCommand);
-  return frames.take();
+  return with_own_bus(frames.take(), robot);
 }
 
 }  // namespace tenon::hw

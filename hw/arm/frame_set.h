@@ -27,10 +27,15 @@ struct BusFrame {
   std::uint32_t period_us = 0;  ///< least time from one to the next
   bool every_cycle = true;      ///< false: heartbeats, controlwords that are sent on change
   std::uint32_t in_a_row = 0;   ///< then comes a pause of many cycles; 0: it never does
+  std::uint8_t bus = kArmBus;
 };
 
 /// Of the force/torque sensor, but for its heartbeat. What is no CANopen node is sender 0.
 [[nodiscard]] std::vector<BusFrame> sensor_frames(const Robot& robot);
+
+/// Where the sensor has a bus to itself, what it sends and what the master sends to all is put
+/// there.
+[[nodiscard]] std::vector<BusFrame> with_own_bus(std::vector<BusFrame> frames, const Robot& robot);
 
 [[nodiscard]] std::vector<BusFrame> frame_set(const Robot& robot);
 

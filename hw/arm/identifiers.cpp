@@ -33,6 +33,7 @@ std::vector<IdentifierOwner> sensor_identifiers(const ForceTorqueSensor& sensor)
   const std::string of = " of the force/torque sensor " + sensor.profile;
   switch (sensor.protocol) {
     case SensorProtocol::kNode:
+    case SensorProtocol::kNone:
       break;
     case SensorProtocol::kRobotousRft:
       return {{sensor.request_id, "the commands" + of},
@@ -51,6 +52,7 @@ std::vector<IdentifierOwner> sensor_identifiers(const ForceTorqueSensor& sensor)
 }
 
 void check_sensor_identifiers(const Robot& robot, std::span<const IdentifierOwner> others) {
+  if (robot.sensor.has_own_bus()) return;
   for (const IdentifierOwner& own : sensor_identifiers(robot.sensor)) {
     for (const IdentifierOwner& other : others) {
       if (own.id != other.id) continue;

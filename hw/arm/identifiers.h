@@ -21,8 +21,8 @@ struct IdentifierOwner {
 /// What CANopen and the drives of an arm use.
 [[nodiscard]] std::vector<IdentifierOwner> canopen_identifiers(const Robot& robot);
 
-/// Throws InputError where a sensor that is no CANopen node has an identifier of `others`; names
-/// both.
+/// Throws InputError where a sensor that is no CANopen node, on the arm's bus, has an identifier of
+/// `others`; names both.
 void check_sensor_identifiers(const Robot& robot, std::span<const IdentifierOwner> others);
 
 }  // namespace tenon::hw

@@ -4,6 +4,7 @@
 // an SDO download to one of its nodes. Uploads are welcome: somebody may read along. Real-time,
 // pure after construction.
 
+#include <array>
 #include <bitset>
 #include <cstdint>
 
@@ -20,9 +21,13 @@ class OtherMaster {
 
  private:
   static constexpr std::size_t kIdentifiers = 2048;
-  std::bitset<kIdentifiers> masters_own_;
-  std::bitset<kIdentifiers> sdo_requests_;
-  std::uint32_t polled_id_ = kIdentifiers;  ///< an empty frame asks the sensor for a sample
+  /// Of one bus: what means a command there may be an answer on the other.
+  struct Betrayals {
+    std::bitset<kIdentifiers> masters_own;
+    std::bitset<kIdentifiers> sdo_requests;
+    std::uint32_t polled_id = kIdentifiers;  ///< an empty frame asks the sensor for a sample
+  };
+  std::array<Betrayals, 2> of_bus_;  ///< kArmBus, kSensorBus
 };
 
 }  // namespace tenon::hw

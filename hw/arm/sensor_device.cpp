@@ -6,6 +6,7 @@
 #include "hw/sensors/ati_netcanoem_source.h"
 #include "hw/sensors/ati_netcanoem_start.h"
 #include "hw/sensors/canopen_wrench_source.h"
+#include "hw/sensors/no_wrench_source.h"
 #include "hw/sensors/robotous_rft_source.h"
 #include "hw/sensors/robotous_rft_start.h"
 
@@ -15,6 +16,8 @@ SensorDevice open_sensor(const ForceTorqueSensor& sensor) {
   switch (sensor.protocol) {
     case SensorProtocol::kNode:
       break;
+    case SensorProtocol::kNone:
+      return {std::make_unique<NoWrenchSource>(), nullptr};
     case SensorProtocol::kRobotousRft:
       return {std::make_unique<RobotousRftSource>(sensor),
               std::make_unique<RobotousRftStart>(sensor)};

@@ -233,7 +233,7 @@ void SettingRunner::record(const SettingTask& task, std::uint32_t value) {
 void SettingRunner::send(const CanFrame& frame, CanBus& bus) {
   // A full queue shows as a node that does not answer; only a dead bus is worth naming.
   if (bus.send(frame) == SendResult::kDown) {
-    fail({ArmFaultKind::kBusDown, 0, 0, 0});
+    fail({ArmFaultKind::kBusDown, 0, 0, bus.status().failed_bus});
   }
 }
 

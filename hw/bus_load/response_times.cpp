@@ -18,10 +18,10 @@ bool can_meet(const BusFrame& a, const BusFrame& b) {
 
 class Analysis {
  public:
-  explicit Analysis(const Robot& robot)
+  Analysis(const Robot& robot, std::uint8_t bus)
       : robot_(robot),
-        bit_us_(1e6 / static_cast<double>(robot.bitrate_bps)),
-        frames_(arm_frames(robot)),
+        bit_us_(1e6 / static_cast<double>(bitrate_bps(robot, bus))),
+        frames_(arm_frames(robot, bus)),
         waits_us_(frames_.size(), 0.0) {}
 
   /// Waiting times depend on one another: they only grow from round to round, until none does.
@@ -122,8 +122,8 @@ class Analysis {
 
 }  // namespace
 
-ResponseTimes response_times(const Robot& robot) {
-  Analysis analysis(robot);
+ResponseTimes response_times(const Robot& robot, std::uint8_t bus) {
+  Analysis analysis(robot, bus);
   ResponseTimes times;
   times.cycle_us = robot.cycle_us;
   times.frames = analysis.run();
@@ -151,13 +151,16 @@ ResponseTimes response_times(const Robot& robot) {
 }
 
 void check_response_times(const Robot& robot) {
-  const ResponseTimes times = response_times(robot);
-  if (times.leaves_room()) return;
-  throw InputError(
-      "robot '" + robot.name + "': " +
-      format("the last feedback comes up to %.0f us after SYNC, and the next SYNC follows after "
-             "%.0f us; take a longer cycle_us or fewer bytes",
-             times.feedback_worst_us, times.cycle_us));
+  for (const std::uint8_t bus : buses_of(robot)) {
+    const ResponseTimes times = response_times(robot, bus);
+    if (times.leaves_room()) continue;
+    throw InputError(
+        "robot '" + robot.name +
+        "': " + (robot.sensor.has_own_bus() ? bus_title(robot, bus) + ": " : "") +
+        format("the last feedback comes up to %.0f us after SYNC, and the next SYNC follows after "
+               "%.0f us; take a longer cycle_us or fewer bytes",
+               times.feedback_worst_us, times.cycle_us));
+  }
 }
 
 std::string describe(const ResponseTimes& times) {

@@ -48,7 +48,7 @@ struct ResponseTimes {
 };
 
 /// @throws InputError where the frames' worst case does not fit the bus at all
-[[nodiscard]] ResponseTimes response_times(const Robot& robot);
+[[nodiscard]] ResponseTimes response_times(const Robot& robot, std::uint8_t bus = kArmBus);
 
 /// Throws InputError with the numbers where the last feedback may come after the next SYNC.
 void check_response_times(const Robot& robot);

@@ -23,15 +23,15 @@ std::string candump_line(const ReceivedFrame& record, const std::string& interfa
   return line;
 }
 
-CandumpLog::CandumpLog(const std::filesystem::path& file, std::string interface,
+CandumpLog::CandumpLog(const std::filesystem::path& file, Interfaces interfaces,
                        std::int64_t unix_offset_ns)
-    : file_("can_log", file), interface_(std::move(interface)), unix_offset_ns_(unix_offset_ns) {}
+    : file_("can_log", file), interfaces_(std::move(interfaces)), unix_offset_ns_(unix_offset_ns) {}
 
 void CandumpLog::drain(CanRecordRing& ring) {
   ReceivedFrame record;
   while (ring.pop(record)) {
     record.time_ns += unix_offset_ns_;
-    file_.add(candump_line(record, interface_) + '\n');
+    file_.add(candump_line(record, interfaces_[record.frame.bus == 0 ? 0 : 1]) + '\n');
   }
   file_.flush();
 }

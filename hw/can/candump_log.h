@@ -7,6 +7,7 @@
 //
 // Not real-time (files, strings): belongs to the thread that empties the ring.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -22,10 +23,13 @@ namespace tenon::hw {
 
 class CandumpLog {
  public:
+  /// The names of bus 0 and of a second one.
+  using Interfaces = std::array<std::string, 2>;
+
   /// Throws InputError where the file cannot be written.
   /// @param unix_offset_ns what is added to a frame's time to make it one since 1970, as other
   /// tools have them; 0: times stay as they are
-  explicit CandumpLog(const std::filesystem::path& file, std::string interface = "can0",
+  explicit CandumpLog(const std::filesystem::path& file, Interfaces interfaces = {"can0", "can1"},
                       std::int64_t unix_offset_ns = 0);
 
   /// Writes everything that the ring holds and hands it to the system.
@@ -35,7 +39,7 @@ class CandumpLog {
 
  private:
   RecordFile file_;
-  std::string interface_;
+  Interfaces interfaces_;
   std::int64_t unix_offset_ns_;
 };
 

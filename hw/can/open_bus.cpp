@@ -1,9 +1,11 @@
 #include "hw/can/open_bus.h"
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 
 #include "hw/can/endpoints.h"
+#include "hw/can/polled_pair.h"
 #include "hw/can/slcan_client.h"
 #include "hw/can/slcan_server.h"
 #include "hw/can/socketcan_bus.h"
@@ -63,6 +65,53 @@ std::unique_ptr<CanBus> open_bus(const std::string& uri, std::uint32_t bitrate_b
   throw InputError("CAN bus '" + uri +
                    "': not understood; use socketcan:INTERFACE, slcan:/dev/TTY, "
                    "slcan://HOST:PORT or slcan-listen://HOST:PORT");
+}
+
+BusUris parse_bus_uris(const std::string& text) {
+  constexpr std::string_view kArm = "arm=";
+  constexpr std::string_view kSensor = "sensor=";
+  if (!text.starts_with(kArm) && !text.starts_with(kSensor)) return {text, ""};
+  const std::size_t comma = std::min(text.find(','), text.size());
+  const std::string_view all = text;
+  BusUris uris;
+  for (std::string_view part :
+       {all.substr(0, comma), all.substr(std::min(comma + 1, all.size()))}) {
+    if (take_prefix(part, kArm)) {
+      uris.arm = part;
+    } else if (take_prefix(part, kSensor)) {
+      uris.sensor = part;
+    }
+  }
+  if (uris.arm.empty() || uris.sensor.empty()) {
+    throw InputError("--can '" + text +
+                     "': two buses are named as arm=URI,sensor=URI, such as "
+                     "arm=socketcan:can0,sensor=socketcan:can1");
+  }
+  // Port 0 is another one each time.
+  if (uris.arm == uris.sensor && !uris.arm.ends_with(":0")) {
+    throw InputError("--can '" + text +
+                     "': names one bus twice; where the sensor is on the arm's, name it once");
+  }
+  return uris;
+}
+
+void settle_buses(const BusUris& uris, Robot& robot) {
+  if (robot.sensor.has_own_bus() && uris.sensor.empty()) {
+    throw InputError("--can '" + uris.arm + "': the force/torque sensor of robot '" + robot.name +
+                     "' has a bus of its own; name both, as arm=" + uris.arm +
+                     ",sensor=socketcan:can1");
+  }
+  if (!uris.sensor.empty() && !robot.sensor.has_own_bus()) {
+    robot.sensor.own_bitrate_bps = robot.bitrate_bps;
+  }
+}
+
+Buses::Buses(const BusUris& uris, const Robot& robot,
+             const std::array<std::uint32_t, BusPair::kBuses>& burst_frames)
+    : arm_(open_bus(uris.arm, robot.bitrate_bps, burst_frames[kArmBus])) {
+  if (uris.sensor.empty()) return;
+  sensor_ = open_bus(uris.sensor, robot.sensor.own_bitrate_bps, burst_frames[kSensorBus]);
+  pair_ = std::make_unique<PolledPair>(*arm_, *sensor_);
 }
 
 std::uint16_t listening_port(const CanBus& bus) {

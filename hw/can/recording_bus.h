@@ -40,6 +40,7 @@ class RecordingBus : public CanBus {
   void flush() noexcept override { bus_.flush(); }
   void wait(std::int64_t at_most_ns) noexcept override { bus_.wait(at_most_ns); }
   [[nodiscard]] CanBusStatus status() const noexcept override { return bus_.status(); }
+  [[nodiscard]] int descriptor() const noexcept override { return bus_.descriptor(); }
 
  private:
   CanBus& bus_;

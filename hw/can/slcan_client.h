@@ -26,6 +26,7 @@ class SlcanClient : public CanBus {
   void flush() noexcept override { stream_.flush(); }
   void wait(std::int64_t at_most_ns) noexcept override;
   [[nodiscard]] CanBusStatus status() const noexcept override;
+  [[nodiscard]] int descriptor() const noexcept override { return stream_.descriptor(); }
 
  private:
   SlcanStream stream_;

@@ -2,6 +2,7 @@
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <sys/epoll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -20,7 +21,10 @@ constexpr std::string_view kRefused = "\a";
 
 }  // namespace
 
-SlcanServer::SlcanServer(Descriptor listener) : listener_(std::move(listener)) {}
+SlcanServer::SlcanServer(Descriptor listener)
+    : listener_(std::move(listener)), sockets_(::epoll_create1(EPOLL_CLOEXEC)) {
+  watch(listener_);
+}
 
 SlcanServer::~SlcanServer() { flush(); }
 
@@ -191,6 +195,13 @@ std::string_view SlcanServer::obey(Client& client, std::string_view command) noe
   return kRefused;
 }
 
+/// Until it is closed.
+void SlcanServer::watch(const Descriptor& socket) noexcept {
+  epoll_event wanted{};
+  wanted.events = EPOLLIN;
+  (void)::epoll_ctl(sockets_.get(), EPOLL_CTL_ADD, socket.get(), &wanted);
+}
+
 void SlcanServer::accept_client() noexcept {
   Descriptor accepted(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!accepted.is_open()) {
@@ -200,6 +211,7 @@ void SlcanServer::accept_client() noexcept {
     if (!client.stream.is_open() && !client.stream.has_input()) {
       const int on = 1;
       ::setsockopt(accepted.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+      watch(accepted);
       client.stream.adopt(std::move(accepted));
       client.channel = Client::Channel::kClosed;
       client.stamps = false;

@@ -44,6 +44,7 @@ class SlcanServer final : public CanBus {
   void flush() noexcept override;
   void wait(std::int64_t at_most_ns) noexcept override;
   [[nodiscard]] CanBusStatus status() const noexcept override;
+  [[nodiscard]] int descriptor() const noexcept override { return sockets_.get(); }
 
   /// The port that it listens on, also where 0 was asked for.
   [[nodiscard]] std::uint16_t port() const noexcept;
@@ -72,7 +73,10 @@ class SlcanServer final : public CanBus {
   [[nodiscard]] static std::string_view obey(Client& client, std::string_view command) noexcept;
   void accept_client() noexcept;
 
+  void watch(const Descriptor& socket) noexcept;
+
   Descriptor listener_;
+  Descriptor sockets_;  ///< the listener's and all clients', as one
   std::array<Client, kMaxClients> clients_;
   CanBusStatus status_;
 };

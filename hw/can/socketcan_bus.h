@@ -31,6 +31,7 @@ class SocketcanBus : public CanBus {
   void flush() noexcept override {}  // the kernel has it already
   void wait(std::int64_t at_most_ns) noexcept override;
   [[nodiscard]] CanBusStatus status() const noexcept override { return status_; }
+  [[nodiscard]] int descriptor() const noexcept override { return socket_.get(); }
 
  private:
   void configure_socket();

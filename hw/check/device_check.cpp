@@ -362,10 +362,7 @@ CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, Device
     if (!joint.stops_at_once) remarks += describe(no_stop, robot) + "\n";
   }
   report.text += describe_start(robot.sensor);
-  const BusLoad load = bus_load(robot);
-  report.text += format("bus: %u frames every %u us, %.1f %% of %u bit/s (%.1f %% at worst)\n",
-                        load.frames_per_cycle, robot.cycle_us, 100.0 * load.nominal,
-                        robot.bitrate_bps, 100.0 * load.worst);
+  report.text += describe_loads(robot);
   for (const std::string& remark : drive_remarks(robot)) report.text += remark + "\n";
   report.text += remarks;
   try {

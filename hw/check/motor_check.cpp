@@ -13,10 +13,8 @@ namespace tenon::hw {
 CheckReport motor_report(const Robot& robot) {
   mit::check_robot(robot);
   CheckReport report;
-  report.text = mit::describe_settings(robot) + describe_start(robot.sensor);
-  const BusLoad load = bus_load(robot);
-  report.text += format("bus: %u frames a cycle, %.1f %% nominal, %.1f %% in the worst case\n",
-                        load.frames_per_cycle, 100.0 * load.nominal, 100.0 * load.worst);
+  report.text =
+      mit::describe_settings(robot) + describe_start(robot.sensor) + describe_loads(robot);
   try {
     check_bus_load(robot);
     check_response_times(robot);

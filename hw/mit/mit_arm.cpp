@@ -36,8 +36,8 @@ std::vector<MotorChannel> motors_of(const Robot& robot) {
 }  // namespace
 
 MitArm::MitArm(const Cell& cell, CanBus& bus)
-    : bus_(bus),
-      robot_(checked(cell.robot)),
+    : robot_(checked(cell.robot)),
+      bus_(robot_, bus, counters_),
       gravity_(cell),
       sensor_bring_up_(sensor_alone(robot_)),
       motor_bring_up_(robot_),
@@ -77,7 +77,7 @@ void MitArm::bring_up(std::int64_t now_ns) {
   for (int i = 0; i < kMostFrames && bus_.receive(received); ++i) {
     if (sensor_.start != nullptr) sensor_.start->process(received.frame);
     if (sensor_bring_up_.state() == BringUp::State::kDone && sensor_.started()) {
-      motor_bring_up_.process(received.frame, now_ns, bus_);
+      if (received.frame.bus == kArmBus) motor_bring_up_.process(received.frame, now_ns, bus_);
     } else {
       sensor_bring_up_.process(received.frame, now_ns, bus_);
       sensor_bring_up_.update(now_ns, bus_);
@@ -165,7 +165,7 @@ void MitArm::command(std::int64_t now_ns, ArmRequest request,
 
 // What stops does not wait for the next cycle.
 void MitArm::decide(ArmRequest request, bool follow, const JointVector& position) noexcept {
-  const JointVector gravity_Nm = gravity_.holding_effort(feedback_.position);
+  const JointVector gravity_Nm = gravity_.effort(feedback_.position, {}, {});
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     motors_[i].update(request, follow, position[i], gravity_Nm[i]);
   }
@@ -202,7 +202,7 @@ void MitArm::take(const ReceivedFrame& received, std::int64_t now_ns) noexcept {
 }
 
 bool MitArm::take_motor(const CanFrame& frame) noexcept {
-  if (frame.extended || frame.remote) return false;
+  if (frame.extended || frame.remote || frame.bus != kArmBus) return false;
   const auto found = std::find_if(motors_.begin(), motors_.end(), [&](const MotorChannel& motor) {
     return motor.feedback_id() == frame.id;
   });
@@ -259,7 +259,7 @@ bool MitArm::take_wrench(const ReceivedFrame& received) noexcept {
 /// What only a master sends: it never hears itself.
 bool MitArm::others_own(const CanFrame& frame) const noexcept {
   if (other_master_.sent(frame)) return true;
-  if (frame.extended || frame.remote) return false;
+  if (frame.extended || frame.remote || frame.bus != kArmBus) return false;
   return frame.id == tenon::mit::kRegisterId ||
          std::any_of(motors_.begin(), motors_.end(),
                      [&](const MotorChannel& motor) { return motor.node() == frame.id; });

@@ -1,5 +1,6 @@
 #pragma once
-// An arm of motors in MIT mode and a force/torque sensor on one CAN bus, behind the arm port.
+// An arm of motors in MIT mode and a force/torque sensor on one CAN bus, or on one each, behind the
+// arm port.
 //
 // prepare() brings up the sensor (hw/arm/bring_up.h, hw/sensors/sensor_start.h), then the motors
 // (motor_bring_up.h). After that a cycle is
@@ -23,16 +24,17 @@
 #include <string>
 #include <vector>
 
+#include "hw/arm/arm_bus.h"
 #include "hw/arm/arm_counters.h"
 #include "hw/arm/bring_up.h"
 #include "hw/arm/device_arm.h"
 #include "hw/arm/sensor_device.h"
-#include "hw/mit/gravity.h"
 #include "hw/mit/mit_supervision.h"
 #include "hw/mit/motor_bring_up.h"
 #include "hw/mit/motor_channel.h"
 #include "hw/sensors/wrench_intake.h"
 #include "shared/cell/cell.h"
+#include "shared/kinematics/inverse_dynamics.h"
 #include "shared/ports/arm.h"
 #include "shared/ports/can_bus.h"
 
@@ -79,13 +81,13 @@ class MitArm : public DeviceArm {
   void send_to_motors() noexcept;
   void send_heartbeat(std::int64_t now_ns) noexcept;
 
-  CanBus& bus_;
   const Robot robot_;
-  const Gravity gravity_;
+  ArmCounters counters_;
+  ArmBus bus_;
+  const InverseDynamics gravity_;  ///< motors without an integral part would sag
   BringUp sensor_bring_up_;
   MotorBringUp motor_bring_up_;
   OtherMaster other_master_;
-  ArmCounters counters_;
   std::vector<MotorChannel> motors_;  ///< of a fixed size: the supervision looks into it
   SensorDevice sensor_;
   WrenchIntake wrench_intake_;

@@ -50,7 +50,7 @@ void MitSupervision::raise(const ArmFault& fault) noexcept {
 
 void MitSupervision::look_at_bus(const CanBusStatus& status) noexcept {
   if (status.up && !status.bus_off) return;
-  raise({status.bus_off ? ArmFaultKind::kBusOff : ArmFaultKind::kBusDown});
+  raise({status.bus_off ? ArmFaultKind::kBusOff : ArmFaultKind::kBusDown, 0, 0, status.failed_bus});
 }
 
 void MitSupervision::heard(const canopen::Heartbeat& heartbeat, std::int64_t now_ns) noexcept {

@@ -1,6 +1,7 @@
 #include "hw/mit/motor_frame_set.h"
 
 #include <cstdint>
+#include <utility>
 
 #include "shared/canopen/constants.h"
 #include "shared/mit/robot_motors.h"
@@ -32,7 +33,7 @@ std::vector<BusFrame> motor_frame_set(const Robot& robot) {
   }
   frames.push_back({"heartbeat of the master", tenon::canopen::kHeartbeat + robot.master_node, 1,
                     robot.master_node, CyclePart::kCommand, heartbeat_us, false});
-  return frames;
+  return with_own_bus(std::move(frames), robot);
 }
 
 }  // namespace tenon::hw::mit

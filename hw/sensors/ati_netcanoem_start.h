@@ -17,7 +17,7 @@ class AtiNetcanoemStart final : public SensorStart {
  public:
   /// @param source is calibrated in the end; must outlive it
   AtiNetcanoemStart(const ForceTorqueSensor& sensor, AtiNetcanoemSource& source)
-      : request_id_(sensor.request_id), source_(source) {}
+      : SensorStart(sensor.bus()), request_id_(sensor.request_id), source_(source) {}
 
  private:
   using Matrix = AtiNetcanoemSource::Matrix;

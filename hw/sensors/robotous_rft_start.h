@@ -9,7 +9,8 @@ namespace tenon::hw {
 
 class RobotousRftStart final : public SensorStart {
  public:
-  explicit RobotousRftStart(const ForceTorqueSensor& sensor) : sensor_(sensor) {}
+  explicit RobotousRftStart(const ForceTorqueSensor& sensor)
+      : SensorStart(sensor.bus()), sensor_(sensor) {}
 
  private:
   [[nodiscard]] std::size_t questions() const override { return 3; }

@@ -15,7 +15,8 @@ void SensorStart::advance() {
 }
 
 void SensorStart::process(const CanFrame& frame) {
-  if (state_ != State::kAsking || tries_ == 0 || !question(at_).is_answered) return;
+  if (frame.bus != bus_ || state_ != State::kAsking || tries_ == 0) return;
+  if (!question(at_).is_answered) return;
   ArmFault fault{ArmFaultKind::kConfiguration, 0, question(at_).object, 0};
   switch (hear(at_, frame, fault)) {
     case Heard::kNothing:
@@ -36,7 +37,7 @@ void SensorStart::update(std::int64_t now_ns, CanBus& bus) {
     if (!asked.is_answered) advance();
   }
   if (state_ != State::kAsking) return;
-  const Question next = question(at_);
+  Question next = question(at_);
   if (tries_ == kTries) {
     state_ = State::kFailed;
     fault_ = {ArmFaultKind::kNoAnswer, 0, next.object, 0};
@@ -44,6 +45,7 @@ void SensorStart::update(std::int64_t now_ns, CanBus& bus) {
   }
   begin(at_);
   // A full queue shows as a sensor that does not answer; of a bus that is gone others tell.
+  next.frame.bus = bus_;
   (void)bus.send(next.frame);
   asked_ns_ = now_ns;
   ++tries_;

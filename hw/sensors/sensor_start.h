@@ -23,7 +23,8 @@ class SensorStart {
   static constexpr std::int64_t kAnswer_ns = 100'000'000;
   static constexpr int kTries = 3;
 
-  SensorStart() = default;
+  /// @param bus that the sensor is on
+  explicit SensorStart(std::uint8_t bus) : bus_(bus) {}
   SensorStart(const SensorStart&) = delete;
   SensorStart& operator=(const SensorStart&) = delete;
   virtual ~SensorStart() = default;
@@ -57,6 +58,7 @@ class SensorStart {
  private:
   void advance();
 
+  std::uint8_t bus_;
   State state_ = State::kAsking;
   ArmFault fault_;
   std::size_t at_ = 0;

@@ -28,6 +28,7 @@ WrenchSource::Taken WrenchIntake::take(const CanFrame& frame, std::int64_t time_
   sample_.reset();
   saturated_.reset();
   unwell_.reset();
+  if (frame.bus != sensor_.bus()) return WrenchSource::Taken::kForeign;
   WrenchHalf half;
   const WrenchSource::Taken taken = source_.take(frame, time_ns, half);
   if (taken != WrenchSource::Taken::kHalf) return taken;

@@ -37,8 +37,9 @@ class WrenchIntake {
   [[nodiscard]] std::optional<CanFrame> begin_cycle() noexcept {
     halves_seen_ = 0;
     ++cycles_since_sample_;
-    const std::optional<CanFrame> request = source_.begin_cycle();
+    std::optional<CanFrame> request = source_.begin_cycle();
     asked_ = request.has_value();
+    if (request) request->bus = sensor_.bus();
     return request;
   }
   /// Reads a frame of the bus. What it brought stands in the calls below until the next one.
@@ -56,7 +57,7 @@ class WrenchIntake {
   /// Nothing more is to be waited for in this cycle: both halves came, of one sample or not, none
   /// is due yet, or none is ever due in a cycle.
   [[nodiscard]] bool answered() const noexcept {
-    return halves_seen_ == 3 || sensor_.streams() ||
+    return halves_seen_ == 3 || sensor_.streams() || sensor_.absent() ||
            (!asked_ && cycles_since_sample_ < sensor_.cycles_per_sample);
   }
   /// What comes outside a cycle has missed one.

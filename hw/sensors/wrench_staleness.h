@@ -15,7 +15,8 @@ class WrenchStaleness {
   static constexpr int kMissingSamples = 5;
 
   explicit WrenchStaleness(const ForceTorqueSensor& sensor)
-      : cycles_per_sample_(static_cast<std::uint32_t>(sensor.cycles_per_sample)) {}
+      : cycles_per_sample_(static_cast<std::uint32_t>(sensor.cycles_per_sample)),
+        owes_(!sensor.absent()) {}
 
   /// The most cycles in a row without a new wrench.
   [[nodiscard]] static std::uint32_t cycles_max(const ForceTorqueSensor& sensor) {
@@ -24,7 +25,7 @@ class WrenchStaleness {
 
   void reset() noexcept { cycles_ = 0; }
   /// A cycle has closed. @param fresh with a new wrench
-  void update(bool fresh) noexcept { cycles_ = fresh ? 0 : cycles_ + 1; }
+  void update(bool fresh) noexcept { cycles_ = fresh || !owes_ ? 0 : cycles_ + 1; }
 
   /// In a row without a new wrench.
   [[nodiscard]] std::uint32_t cycles() const noexcept { return cycles_; }
@@ -38,6 +39,7 @@ class WrenchStaleness {
 
  private:
   std::uint32_t cycles_per_sample_;
+  bool owes_;  ///< there is a sensor
   std::uint32_t cycles_ = 0;
 };
 

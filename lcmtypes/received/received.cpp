@@ -7,6 +7,7 @@ namespace {
 constexpr std::size_t kBeforeJointCount = 313;
 constexpr std::size_t kBeforePlan = 32;
 constexpr std::size_t kEndReason = 1;
+constexpr std::size_t kBeforeCounts = 81;  // of joints, 8 bits, and of steps, 16 bits
 
 /// A string: its length with a final zero, as i32 be, and its bytes. Steps over it.
 bool take_string(std::span<const std::uint8_t>& bytes) {
@@ -38,6 +39,23 @@ template <>
 bool lengths_fit<run_summary_t>(std::span<const std::uint8_t> bytes) {
   return skip(bytes, kBeforePlan) && take_string(bytes) && take_string(bytes) &&
          skip(bytes, kEndReason) && take_string(bytes);
+}
+
+// The arrays behind are as long as the counts say, which decoding compares with the bytes that are
+// left.
+template <>
+bool lengths_fit<run_setup_t>(std::span<const std::uint8_t> bytes) {
+  constexpr std::uint8_t kNegative = 0x80;
+  constexpr std::size_t kJoints = 1;
+  constexpr std::size_t kSteps = 2;
+  if (!skip(bytes, kBeforeCounts) || bytes.size() < kJoints + kSteps) return false;
+  if (bytes[0] >= kNegative || bytes[kJoints] >= kNegative) return false;
+  bytes = bytes.subspan(kJoints + kSteps);
+  constexpr int kStrings = 5;
+  for (int i = 0; i < kStrings; ++i) {
+    if (!take_string(bytes)) return false;
+  }
+  return true;
 }
 
 }  // namespace tenon

@@ -8,6 +8,7 @@
 
 namespace tenon {
 class cycle_state_t;
+class run_setup_t;
 class run_summary_t;
 
 inline constexpr std::size_t kMessageMax_bytes = 1U << 20U;
@@ -22,6 +23,8 @@ template <>
 [[nodiscard]] bool lengths_fit<cycle_state_t>(std::span<const std::uint8_t> bytes);
 template <>
 [[nodiscard]] bool lengths_fit<run_summary_t>(std::span<const std::uint8_t> bytes);
+template <>
+[[nodiscard]] bool lengths_fit<run_setup_t>(std::span<const std::uint8_t> bytes);
 
 /// Empty unless the bytes are one such message from their first to their last.
 template <typename Message>

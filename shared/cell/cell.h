@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "shared/cell/robot.h"
 #include "shared/math/pose.h"
@@ -17,6 +18,22 @@ struct SensorBias {
   double torque_tolerance_Nm = 0.0;
 };
 
+/// What identification found of a drive's friction: N, N s/m and m, or Nm, Nm s/rad and rad.
+struct JointFriction {
+  double coulomb = 0.0;
+  double viscous = 0.0;
+  double offset = 0.0;  ///< what the drive reports without load, and what gravity's model misses
+  double way = 1e-4;    ///< within which Coulomb friction turns after a reversal
+  double hysteresis = 0.0;       ///< what turns within a longer way, a gear's
+  double hysteresis_way = 1e-2;  ///< that way
+  double residual = 0.0;         ///< the most that all that was off by
+};
+
+/// The force comes from the efforts of the joints.
+struct JointTorque {
+  std::vector<JointFriction> joints;  ///< empty: nothing has been identified
+};
+
 struct Cell {
   std::string name;
   Robot robot;
@@ -29,8 +46,9 @@ struct Cell {
   double contact_stiffness_Npm = 5e4;       ///< k_e, in series with arm and sensor
   double contact_stiffness_Nmpr =
       0.0;  ///< the same against a turn about the tool tip; 0: not known
-  std::optional<SensorBias> sensor_bias;  ///< unset: a tare takes what it finds
-  double force_fault_N = 60.0;            ///< beyond: stop
+  std::optional<SensorBias> sensor_bias;    ///< unset: a tare takes what it finds
+  std::optional<JointTorque> joint_torque;  ///< unset: the robot's sensor measures the force
+  double force_fault_N = 60.0;              ///< beyond: stop
   double torque_fault_Nm = 10.0;
   bool hold_if_brake_fails = false;  ///< a brake that slips after disabling: power again, and hold
 };

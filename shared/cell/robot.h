@@ -50,7 +50,12 @@ enum class SensorProtocol : std::uint8_t {
   kNode = 0,          ///< a node as the drives are: the beginning of a cycle
   kRobotousRft = 1,   ///< its own clock
   kAtiNetcanoem = 2,  ///< a request
+  kNone = 3,          ///< there is none: the joints' efforts tell the force
 };
+
+/// The buses of an arm, as CanFrame::bus names them.
+inline constexpr std::uint8_t kArmBus = 0;
+inline constexpr std::uint8_t kSensorBus = 1;
 
 /// A force/torque sensor whose sample comes in two frames.
 struct ForceTorqueSensor {
@@ -71,12 +76,16 @@ struct ForceTorqueSensor {
   double torque_noise_Nm = 0.0;
   /// m: a new sample every so many cycles, 1 to kMostCyclesPerSample.
   int cycles_per_sample = 1;
+  std::uint32_t own_bitrate_bps = 0;  ///< of a bus that it has to itself; 0: it is on the arm's
 
   static constexpr int kMostCyclesPerSample = 20;
   static constexpr std::uint32_t kIdentifierMax = 0x7FF;
 
+  [[nodiscard]] bool absent() const { return protocol == SensorProtocol::kNone; }
   /// It has a clock of its own: a sample may fall into any cycle, and none is waited for.
   [[nodiscard]] bool streams() const { return protocol == SensorProtocol::kRobotousRft; }
+  [[nodiscard]] bool has_own_bus() const { return own_bitrate_bps != 0; }
+  [[nodiscard]] std::uint8_t bus() const { return has_own_bus() ? kSensorBus : kArmBus; }
 };
 
 struct Robot {
@@ -96,6 +105,11 @@ struct Robot {
   double stiffness_Npm = 1e6;        ///< of the arm at the tool, physical
   int measurement_delay_cycles = 1;  ///< n
 };
+
+/// Time constant of the filter that smooths the joints' efforts where they tell the force.
+inline constexpr int kEffortFilterCycles = 3;
+/// So much older than a sensor's sample is that force: the filter, and the middle of two cycles.
+inline constexpr int kEffortDelayCycles = kEffortFilterCycles + 1;
 
 /// What the protocol alone takes from a setpoint to the motion: a target is taken up as the next
 /// cycle begins and reached as the one after does.

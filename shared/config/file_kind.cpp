@@ -18,8 +18,8 @@ struct Kind {
   std::vector<std::string_view> telling;  ///< keys that no other kind has
 };
 
-const std::array<Kind, 6>& kinds() {
-  static const std::array<Kind, 6> kKinds = {{
+const std::array<Kind, 7>& kinds() {
+  static const std::array<Kind, 7> kKinds = {{
       {FileKind::kTask,
        "a task file",
        "goes first with tenon-plan, elsewhere with --task",
@@ -35,6 +35,10 @@ const std::array<Kind, 6>& kinds() {
        "an experiment",
        "goes with tenon-evaluate --experiment",
        {"task_in_base_error_m", "sensor_noise_factor", "servo_stiffness_factor"}},
+      {FileKind::kFriction,
+       "a friction file",
+       "is named by a cell's joint_torque",
+       {"friction_of"}},
   }};
   return kKinds;
 }

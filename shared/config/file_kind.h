@@ -9,7 +9,15 @@
 
 namespace tenon::config {
 
-enum class FileKind : std::uint8_t { kTask, kCell, kRobot, kDrive, kSensor, kExperiment };
+enum class FileKind : std::uint8_t {
+  kTask,
+  kCell,
+  kRobot,
+  kDrive,
+  kSensor,
+  kExperiment,
+  kFriction
+};
 
 /// Refuses a document that has the keys of another kind and none of its own: "FILE: is a cell file,
 /// not a task file; a cell file goes with --cell". Of any other it says nothing: the loader names

@@ -8,6 +8,7 @@
 #include "shared/config/drive_file.h"
 #include "shared/config/file_kind.h"
 #include "shared/config/files.h"
+#include "shared/config/friction_file.h"
 #include "shared/config/load.h"
 #include "shared/config/sensor_file.h"
 #include "shared/config/yaml_value.h"
@@ -61,15 +62,64 @@ void append_profiles(const std::filesystem::path& robot_file,
   }
 }
 
+/// The force comes from the joints: the robot's sensor, where it has one, is not there.
+void leave_out_sensor(Robot& robot) {
+  constexpr double kLever_m = 0.3;
+  constexpr double kPermille = 1e-3;
+  ForceTorqueSensor none;
+  none.protocol = SensorProtocol::kNone;
+  none.profile = "joint_torque";
+  // What rounding leaves of an effort, about.
+  for (const Joint& joint : robot.joints) {
+    const bool turns = joint.kind == Joint::Kind::kRevolute;
+    const double count = kPermille * joint.rated_effort;
+    none.force_per_count_N = std::max(none.force_per_count_N, turns ? count / kLever_m : count);
+    none.torque_per_count_Nm = std::max(none.torque_per_count_Nm, turns ? count : count * kLever_m);
+  }
+  robot.sensor = none;
+  robot.measurement_delay_cycles += kEffortDelayCycles;
+}
+
+void read_joint_torque(const Map& map, const std::filesystem::path& file, Cell& cell) {
+  const auto value = map.find("joint_torque");
+  if (!value) {
+    if (!cell.robot.sensor.absent()) return;
+    map.at("robot").refuse("robot " + cell.robot.name +
+                           " has no force/torque sensor; say joint_torque: {} to take the force "
+                           "from its joints' efforts");
+  }
+  const Map keys(*value, {"friction"});
+  cell.joint_torque.emplace();
+  if (const auto friction = keys.find("friction")) {
+    const auto path = (file.parent_path() / friction->text()).lexically_normal();
+    cell.joint_torque->joints = config::read_friction(path, cell.robot);
+  }
+  if (const auto bias = map.find("sensor_bias")) {
+    bias->refuse("means nothing where joint_torque stands: there is no sensor");
+  }
+  leave_out_sensor(cell.robot);
+}
+
+/// Beyond its range a sensor would never show a fault.
+void read_faults(const Value& value, Cell& cell) {
+  constexpr double kMost = 1e5;  // of joints
+  const ForceTorqueSensor& sensor = cell.robot.sensor;
+  const Map map(value, {"force_N", "torque_Nm"});
+  const bool none = sensor.absent();
+  cell.force_fault_N = map.number("force_N", positive_to(none ? kMost : sensor.force_range_N));
+  cell.torque_fault_Nm =
+      map.number("torque_Nm", positive_to(none ? kMost : sensor.torque_range_Nm));
+}
+
 }  // namespace
 
 Cell load_cell(const std::filesystem::path& file) {
   const Value document = Value::parse(file, config::read_file(file));
   config::expect_kind(file, document, config::FileKind::kCell);
-  const Map map(document,
-                {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange",
-                 "sensor_in_flange", "payload", "contact_stiffness_Npm", "contact_stiffness_Nmpr",
-                 "sensor_bias", "faults", "on_brake_failure", "falls_without_power"});
+  const Map map(document, {"name", "robot", "up_in_base", "task_in_base", "tool_in_flange",
+                           "sensor_in_flange", "payload", "contact_stiffness_Npm",
+                           "contact_stiffness_Nmpr", "sensor_bias", "joint_torque", "faults",
+                           "on_brake_failure", "falls_without_power"});
   Cell cell;
   cell.name = map.at("name").name();
   if (const auto up = map.find("up_in_base")) {
@@ -87,6 +137,8 @@ Cell load_cell(const std::filesystem::path& file) {
 
   cell.robot = load_robot((file.parent_path() / map.at("robot").text()).lexically_normal());
 
+  read_joint_torque(map, file, cell);
+
   // The arm is one part of the series, which is softer than each of its parts.
   cell.contact_stiffness_Npm =
       map.number("contact_stiffness_Npm", {1e2, std::min(1e8, cell.robot.stiffness_Npm)});
@@ -95,10 +147,7 @@ Cell load_cell(const std::filesystem::path& file) {
     cell.sensor_bias = read_bias(*bias, cell.robot.sensor);
   }
 
-  // Beyond its range the sensor would never show the fault.
-  const Map faults(map.at("faults"), {"force_N", "torque_Nm"});
-  cell.force_fault_N = faults.number("force_N", positive_to(cell.robot.sensor.force_range_N));
-  cell.torque_fault_Nm = faults.number("torque_Nm", positive_to(cell.robot.sensor.torque_range_Nm));
+  read_faults(map.at("faults"), cell);
   if (const auto reaction = map.find("on_brake_failure")) {
     if (!cell.robot.brakes) reaction->refuse("robot " + cell.robot.name + " has no brakes");
     cell.hold_if_brake_fails = reaction->choice({"power_off", "hold"}) == 1;
@@ -120,6 +169,10 @@ std::vector<std::filesystem::path> cell_files(const std::filesystem::path& file)
     }
   }
   std::sort(files.begin(), files.end());
+  const auto torque = cell.peek("joint_torque");
+  if (const auto friction = torque ? torque->peek("friction") : std::nullopt) {
+    files.push_back((file.parent_path() / friction->text()).lexically_normal());
+  }
   files.insert(files.begin(), file);
   if (const auto robot = cell.peek("robot")) {
     append_profiles((file.parent_path() / robot->text()).lexically_normal(), files);

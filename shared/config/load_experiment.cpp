@@ -28,6 +28,16 @@ Spread read_error(const Value& value, double magnitude) {
   return spread;
 }
 
+DriveFrictionRange read_drive_friction(const Value& value) {
+  const Map map(value, {"share", "seed"});
+  DriveFrictionRange range;
+  range.share = read_range(map.at("share"), {0.0, 0.5});
+  if (const auto seed = map.find("seed")) {
+    range.seed = static_cast<std::uint64_t>(seed->integer(0, std::int64_t{1} << 53));
+  }
+  return range;
+}
+
 }  // namespace
 
 WorldRanges load_experiment(const std::filesystem::path& file) {
@@ -50,6 +60,7 @@ WorldRanges load_experiment(const std::filesystem::path& file) {
                            "extra_delay_s",
                            "backlash_m",
                            "backlash_rad",
+                           "drive_friction",
                            "sensor_noise_factor",
                            "force_drift_N_sqrts",
                            "torque_drift_Nm_sqrts"});
@@ -78,6 +89,9 @@ WorldRanges load_experiment(const std::filesystem::path& file) {
   range("extra_delay_s", {0.0, 0.1}, ranges.extra_delay_s);
   range("backlash_m", {0.0, 0.01}, ranges.backlash_m);
   range("backlash_rad", {0.0, 0.1}, ranges.backlash_rad);
+  if (const auto friction = map.find("drive_friction")) {
+    ranges.drive_friction = read_drive_friction(*friction);
+  }
   range("sensor_noise_factor", {0.0, 100.0}, ranges.sensor_noise_factor);
   range("force_drift_N_sqrts", {0.0, 100.0}, ranges.force_drift_N_sqrts);
   range("torque_drift_Nm_sqrts", {0.0, 100.0}, ranges.torque_drift_Nm_sqrts);

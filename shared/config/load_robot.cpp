@@ -11,6 +11,7 @@
 #include "shared/base/text.h"
 #include "shared/canopen/drive_profile.h"
 #include "shared/canopen/robot_drives.h"
+#include "shared/config/bitrate.h"
 #include "shared/config/drive_file.h"
 #include "shared/config/file_kind.h"
 #include "shared/config/files.h"
@@ -138,12 +139,7 @@ void read_joints(const Value& value, const std::string& urdf, std::set<std::int6
 void read_bus(const Value& value, std::set<std::int64_t>& nodes, Robot& robot) {
   const Map map(value, {"bitrate_bps", "cycle_us", "heartbeat_ms", "heartbeat_timeout_ms",
                         "master_node", "targets_per_frame"});
-  // The bit rates of CiA 301.
-  constexpr std::array<std::uint32_t, 7> kBitrates_bps = {20'000,  50'000,  125'000,  250'000,
-                                                          500'000, 800'000, 1'000'000};
-  robot.bitrate_bps = kBitrates_bps[map.at("bitrate_bps")
-                                        .choice({"20000", "50000", "125000", "250000", "500000",
-                                                 "800000", "1000000"})];
+  robot.bitrate_bps = config::read_bitrate_bps(map.at("bitrate_bps"));
   const Value cycle = map.at("cycle_us");
   robot.cycle_us = static_cast<std::uint32_t>(cycle.integer(1000, 20'000));
   // The drives' interpolation period (60C2h) is written in milliseconds.
@@ -187,9 +183,11 @@ Robot load_robot(const std::filesystem::path& file) {
   const bool mit = protocol && protocol->choice({"canopen", "mit"}) == 1;
   robot.brakes = !mit;
   read_joints(map.at("joints"), urdf, nodes, mit ? nullptr : &drives, robot.joints);
-  robot.sensor = config::read_sensor(map.at("sensor"), file, nodes);
+  const auto sensor = map.find("sensor");
+  robot.sensor.protocol = SensorProtocol::kNone;
+  if (sensor) robot.sensor = config::read_sensor(*sensor, file, nodes);
   read_bus(map.at("bus"), nodes, robot);
-  config::read_sample_period(map.at("sensor"), robot.cycle_us, robot.sensor);
+  if (sensor) config::read_sample_period(*sensor, robot.cycle_us, robot.sensor);
 
   const Map arm(map.at("arm"), {"response_lag_s", "stiffness_Npm", "measurement_delay_cycles"});
   robot.response_lag_s = read_response_lag_s(arm.at("response_lag_s"), robot);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shared/base/text.h"
+#include "shared/config/bitrate.h"
 #include "shared/config/file_kind.h"
 #include "shared/config/files.h"
 #include "shared/config/sensor_file.h"
@@ -33,13 +34,13 @@ Value named_profile(const Value& name, const std::filesystem::path& robot_file) 
 /// Profile and file in one; the file's word goes first.
 Map merged(const Value& value, const std::filesystem::path& robot_file) {
   // Here what the profile alone says is unknown.
-  (void)Map(value, {"profile", "node", "identifiers", "rate_hz", "period_us", "force_per_count_N",
-                    "torque_per_count_Nm", "force_range_N", "torque_range_Nm", "force_noise_N",
-                    "torque_noise_Nm"});
+  (void)Map(value, {"profile", "bus", "node", "identifiers", "rate_hz", "period_us",
+                    "force_per_count_N", "torque_per_count_Nm", "force_range_N", "torque_range_Nm",
+                    "force_noise_N", "torque_noise_Nm"});
   const auto profile = value.peek("profile");
   const Value all = profile ? named_profile(*profile, robot_file).overlaid_with(value) : value;
   return {all,
-          {"name", "protocol", "unverified", "profile", "node", "identifiers", "rate_hz",
+          {"name", "protocol", "unverified", "profile", "bus", "node", "identifiers", "rate_hz",
            "period_us", "force_per_count_N", "torque_per_count_Nm", "force_range_N",
            "torque_range_Nm", "force_noise_N", "torque_noise_Nm"}};
 }
@@ -153,6 +154,9 @@ ForceTorqueSensor read_sensor(const Value& value, const std::filesystem::path& r
       sensor.unverified.push_back(line.text());
     }
   }
+  if (const auto bus = map.find("bus")) {
+    sensor.own_bitrate_bps = read_bitrate_bps(Map(*bus, {"bitrate_bps"}).at("bitrate_bps"));
+  }
   if (const auto protocol = map.find("protocol")) sensor.protocol = read_protocol(*protocol);
   switch (sensor.protocol) {
     case SensorProtocol::kNode:
@@ -163,6 +167,8 @@ ForceTorqueSensor read_sensor(const Value& value, const std::filesystem::path& r
       break;
     case SensorProtocol::kAtiNetcanoem:
       read_ati(map, sensor);
+      break;
+    case SensorProtocol::kNone:
       break;
   }
   sensor.force_noise_N = map.number("force_noise_N", {0.0, sensor.force_range_N});

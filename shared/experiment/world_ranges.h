@@ -3,6 +3,7 @@
 // sim/experiments/*.yaml hold. Plain data; sim/cell/virtual_arm/world_draw.h draws from it. Planner
 // and executor never see it.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -14,6 +15,13 @@ struct Spread {
   double high = 0.0;
   /// Where not 0: instead, normally about 0 with this standard deviation, never beyond three of it.
   double sigma = 0.0;
+};
+
+/// Friction of the drives: Coulomb, viscous at full speed, and hysteresis together.
+struct DriveFrictionRange {
+  Spread share;  ///< of a drive's rated effort, each drive by itself
+  /// Every world has the same arm, drawn from this; unset: another arm in each.
+  std::optional<std::uint64_t> seed;
 };
 
 /// The default of everything is no difference.
@@ -37,9 +45,10 @@ struct WorldRanges {
   Spread payload_com_error_m;  ///< each axis by itself
   // Servos.
   Spread servo_stiffness_factor{.low = 1.0, .high = 1.0};
-  Spread extra_delay_s;  ///< of the servos behind their demand
-  Spread backlash_m;     ///< of prismatic joints
-  Spread backlash_rad;   ///< of revolute joints
+  Spread extra_delay_s;                              ///< of the servos behind their demand
+  Spread backlash_m;                                 ///< of prismatic joints
+  Spread backlash_rad;                               ///< of revolute joints
+  std::optional<DriveFrictionRange> drive_friction;  ///< unset: none
   // Force/torque sensor.
   Spread sensor_noise_factor{.low = 1.0, .high = 1.0};
   Spread force_drift_N_sqrts;  ///< random walk of the bias: standard deviation after 1 s

@@ -42,8 +42,8 @@ enum class ArmFaultKind : std::uint8_t {
   kFeedbackMissing = 7,  ///< too many cycles without a joint's feedback
   kSensorStale = 8,      ///< too many cycles without a wrench
   kSensorInvalid = 9,    ///< saturated, torn or self-reported fault
-  kBusDown = 10,
-  kBusOff = 11,
+  kBusDown = 10,         ///< code: which, of several (CanFrame::bus)
+  kBusOff = 11,          ///< likewise
   kOtherMaster = 12,  ///< another master sends on the bus; code is the identifier that betrayed it
   kQueueFull = 13,    ///< our own frames were refused; code: cycles in a row
   kBusSilent = 14,    ///< nobody answered at all; code: cycles in a row

@@ -12,6 +12,7 @@ struct CanFrame {
   bool remote = false;
   std::uint8_t length = 0;  ///< 0..8
   std::array<std::uint8_t, 8> data{};
+  std::uint8_t bus = 0;  ///< which, where a port stands for several (shared/bus/bus_pair.h)
 
   friend bool operator==(const CanFrame&, const CanFrame&) = default;
 };
@@ -26,12 +27,20 @@ struct CanBusStatus {
   bool up = true;
   bool bus_off = false;
   bool error_passive = false;
+  std::uint8_t failed_bus = 0;  ///< the one that is down or bus-off, of several
   std::uint64_t sent = 0;
   std::uint64_t received = 0;
   std::uint64_t send_failures = 0;  ///< queue full, interface down
   std::uint64_t malformed = 0;      ///< dropped as not a frame
   std::uint64_t error_frames = 0;
   std::uint64_t overruns = 0;
+};
+
+/// What has passed a bus's end since it was opened. Counters only grow.
+struct CanBusTraffic {
+  CanBusStatus status;
+  std::uint64_t nominal_bits = 0;  ///< of all frames sent and received, without stuff bits
+  std::uint64_t worst_bits = 0;    ///< with all stuff bits that there can be
 };
 
 enum class SendResult : std::uint8_t {
@@ -57,6 +66,8 @@ class CanBus {
   /// at once.
   virtual void wait(std::int64_t at_most_ns) noexcept = 0;
   [[nodiscard]] virtual CanBusStatus status() const noexcept = 0;
+  /// What is readable when a frame may be there, for whoever waits for several; -1: nothing is.
+  [[nodiscard]] virtual int descriptor() const noexcept { return -1; }
 };
 
 }  // namespace tenon

@@ -11,7 +11,10 @@
 
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
+#include "executor/telemetry/setup_message.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
+#include "lcmtypes/tenon/run_setup_t.hpp"
+#include "lcmtypes/tenon/run_status_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"
 #include "shared/base/error.h"
@@ -26,7 +29,7 @@ RunResult published_run(TelemetryOutputs outputs) {
   const auto recorder = std::make_unique<Recorder>();
   Bench bench(touch_and_slide_plan(), {}, hand_made_cell(), Vector3::Zero(), recorder.get());
   bench.arm.walls.push_back({0, +1, 0.13});
-  Telemetry telemetry(std::move(outputs), 3, &bench.controller.runner(), *recorder);
+  Telemetry telemetry(std::move(outputs), hand_made_cell(), &bench.controller.runner(), *recorder);
   recorder->add(telemetry);
   bench.run([&] { recorder->drain(); });
   recorder->drain();
@@ -73,6 +76,63 @@ TEST(Telemetry, TheLogHoldsEveryCycleEveryStepAndTheSummary) {
   EXPECT_EQ(summaries[0].plan, "hand-made");
   EXPECT_EQ(summaries[0].sequence, static_cast<std::int64_t>(result.statistics.cycles));
   std::filesystem::remove(file);
+}
+
+// The plan's numbers stand in hand_made.cpp: +x 0.1 m that ends in a contact, then +y.
+TEST(Telemetry, ALogBeginsWithWhatTheRunIsMeasuredByAndTellsItEachSecond) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "tenon_telemetry_setup_test.lcmlog";
+  std::vector<std::string> warnings;
+  const RunResult result = published_run(open_telemetry("none", file, warnings));
+  lcm::LogFile log(file.string(), "r");
+  ASSERT_TRUE(log.good());
+  std::vector<tenon::run_setup_t> setups;
+  std::vector<tenon::run_status_t> statuses;
+  std::string first;
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    if (first.empty()) first = event->channel;
+    if (event->channel == kSetupChannel) {
+      ASSERT_GT(setups.emplace_back().decode(event->data, 0, event->datalen), 0);
+    } else if (event->channel == kStatusChannel) {
+      ASSERT_GT(statuses.emplace_back().decode(event->data, 0, event->datalen), 0);
+    }
+  }
+  std::filesystem::remove(file);
+  EXPECT_EQ(first, kSetupChannel);
+  const auto seconds = static_cast<std::size_t>(result.duration_s);
+  EXPECT_GE(setups.size(), seconds);
+  EXPECT_LE(setups.size(), seconds + 2);
+  EXPECT_GE(statuses.size(), 9 * seconds);
+  const Plan plan = touch_and_slide_plan();
+  const tenon::run_setup_t& m = setups.at(0);
+  EXPECT_EQ(m.plan, plan.task_name);
+  EXPECT_EQ(m.cycle_s, 0.002);
+  ASSERT_EQ(m.joint_count, 3);
+  EXPECT_EQ(m.joint_upper.at(1), hand_made_cell().robot.joints[1].upper);
+  ASSERT_EQ(m.step_count, 2);
+  EXPECT_NEAR(m.displacement.at(0).at(0), plan.steps[0].displacement[0], 1e-12);
+  EXPECT_EQ(m.force_on_N.at(1), plan.parameter_sets[0].thresholds.force_on_N);
+  EXPECT_EQ(statuses.at(0).awaited_step, -1);
+  EXPECT_EQ(statuses.at(0).bus_known, 0);
+}
+
+TEST(Telemetry, TheBusIsToldByWhatGrewSinceTheLastStatus) {
+  CanBusTraffic before;
+  before.nominal_bits = 1000;
+  before.status.received = 5;
+  CanBusTraffic now = before;
+  now.nominal_bits += 50'000;
+  now.worst_bits = 60'000;
+  now.status.sent = 200;
+  now.status.send_failures = 3;
+  tenon::run_status_t m{};
+  tell_bus(now, before, 0.1, 1'000'000, m);
+  EXPECT_NEAR(m.bus_load, 0.5, 1e-12);
+  EXPECT_NEAR(m.bus_load_worst, 0.6, 1e-12);
+  EXPECT_NEAR(m.frame_rate_hz, 2000.0, 1e-9);
+  EXPECT_EQ(m.send_failures, 3);
+  tell_bus(now, before, 0.0, 1'000'000, m = {});
+  EXPECT_EQ(m.bus_load, 0.0);
 }
 
 struct Inbox {

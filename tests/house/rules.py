@@ -51,7 +51,8 @@ RESERVED = [
     ("ODE", re.compile(r"^ode/"), lambda path, main: path.startswith(("sim/", "tests/")) and not main),
     ("LCM", re.compile(r"^(lcm|lcmtypes)/"),
      lambda path, main: path.startswith("tests/") or path == "executor/main_monitor.cpp"
-     or path.startswith(("executor/telemetry/", "sim/listener/", "lcmtypes/"))),
+     or path.startswith(("executor/telemetry/", "executor/monitor/", "sim/listener/", "lcmtypes/"))),
+    ("ncurses", re.compile(r"^n?curses"), lambda path, main: path == "executor/main_monitor_screen.cpp"),
     ("yaml-cpp", re.compile(r"^yaml-cpp/"),
      lambda path, main: path.startswith(("shared/config/", "tests/"))),
     ("urdfdom", re.compile(r"^urdf"), lambda path, main: path.startswith("shared/config/")),
@@ -241,6 +242,7 @@ SELF_TEST = [
     ("sim/f.cpp", "#include <ode/ode.h>\n", None),
     ("executor/g.cpp", "#include <lcm/lcm-cpp.hpp>\n", "(LCM) is not for this file"),
     ("executor/telemetry/g.cpp", '#include "lcmtypes/tenon/status_t.hpp"\n', None),
+    ("executor/monitor/g.cpp", "#include <curses.h>\n", "(ncurses) is not for this file"),
     ("executor/h.cpp", '#include "shared/config/load_task.h"\n', "is for mains and tests alone"),
     ("executor/main_exec.cpp", '#include "shared/config/load_task.h"\n#include <CLI/CLI.hpp>\n', None),
     ("shared/i.cpp", "#include <thread>\n", "is not for this file"),

@@ -191,7 +191,7 @@ TEST(CandumpLog, TellsTimesSince1970) {
   const auto ring = std::make_unique<CanRecordRing>();
   ring->push({frame_of(0x201, 1), 2'500'000'000});
   const std::string file = testing::TempDir() + "tenon_candump_unix_test.log";
-  EXPECT_TRUE(CandumpLog(file, "can1", 1'700'000'000'000'000'000).close(*ring).whole());
+  EXPECT_TRUE(CandumpLog(file, {"can1", "can2"}, 1'700'000'000'000'000'000).close(*ring).whole());
   std::stringstream text;
   text << std::ifstream(file).rdbuf();
   EXPECT_EQ(text.str(), "(1700000002.500000) can1 201#01\n");

@@ -18,6 +18,8 @@
 #include "executor/states/ending.h"
 #include "executor/telemetry/telemetry.h"
 #include "lcmtypes/tenon/cycle_state_t.hpp"
+#include "lcmtypes/tenon/run_setup_t.hpp"
+#include "lcmtypes/tenon/run_status_t.hpp"
 #include "lcmtypes/tenon/run_summary_t.hpp"
 #include "lcmtypes/tenon/step_event_t.hpp"
 #include "tests/support/busy_machine.h"
@@ -101,6 +103,8 @@ struct Log {
   std::vector<tenon::cycle_state_t> cycles;
   std::vector<tenon::step_event_t> steps;
   std::vector<tenon::run_summary_t> summaries;
+  std::vector<tenon::run_setup_t> setups;
+  std::vector<tenon::run_status_t> statuses;
   std::string last_channel;
 };
 
@@ -121,6 +125,10 @@ Log read_log(const std::string& file) {
       decode_into(log.steps, *event);
     } else if (event->channel == executor::kRunChannel) {
       decode_into(log.summaries, *event);
+    } else if (event->channel == executor::kSetupChannel) {
+      decode_into(log.setups, *event);
+    } else if (event->channel == executor::kStatusChannel) {
+      decode_into(log.statuses, *event);
     } else {
       ADD_FAILURE() << "channel " << event->channel;
     }
@@ -138,6 +146,9 @@ void expect_whole_log(const std::string& file, const nlohmann::json& result) {
   }
   EXPECT_EQ(log.steps.size(), result.at("steps").size());
   ASSERT_EQ(log.summaries.size(), 1U);
+  EXPECT_FALSE(log.setups.empty());
+  for (const auto& setup : log.setups) EXPECT_EQ(setup.plan, log.summaries[0].plan);
+  EXPECT_FALSE(log.statuses.empty());
   EXPECT_EQ(log.last_channel, executor::kRunChannel);
   EXPECT_EQ(log.summaries[0].exit_code, 0);
   EXPECT_EQ(log.summaries[0].end_reason, static_cast<int>(executor::EndReason::kPlanDone));

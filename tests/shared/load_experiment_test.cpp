@@ -58,6 +58,21 @@ TEST_F(LoadExperimentTest, RangesAndSigmasGoWhereTheyBelong) {
   EXPECT_EQ(ranges.tool_in_flange_error_rad.high, 0.02);
   EXPECT_EQ(ranges.tool_in_flange_error_m.high, 0.0);
   EXPECT_EQ(ranges.backlash_rad.high, 1e-3);
+  EXPECT_FALSE(ranges.drive_friction);
+}
+
+TEST_F(LoadExperimentTest, FrictionOfTheDrivesIsOneArmsWithASeedAndEachWorldsOwnWithout) {
+  const WorldRanges one = load("name: a\ndrive_friction: {share: [0.02, 0.1], seed: 7}\n");
+  ASSERT_TRUE(one.drive_friction);
+  EXPECT_EQ(one.drive_friction->share.low, 0.02);
+  EXPECT_EQ(one.drive_friction->share.high, 0.1);
+  EXPECT_EQ(one.drive_friction->seed, 7U);
+  const WorldRanges many = load("name: a\ndrive_friction: {share: [0.05, 0.05]}\n");
+  ASSERT_TRUE(many.drive_friction);
+  EXPECT_FALSE(many.drive_friction->seed);
+  EXPECT_NE(refusal("name: a\ndrive_friction: {share: [0.1, 0.6]}\n")
+                .find("x.yaml:2: drive_friction.share[1] = 0.6, must be in [0.1, 0.5]"),
+            std::string::npos);
 }
 
 TEST_F(LoadExperimentTest, RefusalsNameLineKeyValueAndBound) {

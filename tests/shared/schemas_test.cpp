@@ -14,6 +14,7 @@
 
 #include "shared/base/error.h"
 #include "shared/config/drive_file.h"
+#include "shared/config/friction_file.h"
 #include "shared/config/load.h"
 #include "shared/config/sensor_file.h"
 #include "tests/support/places.h"
@@ -222,13 +223,45 @@ physics: {friction: {low: 0.1, nominal: 0.3, high: 0.6}, contact_stiffness_Npm: 
 )"});
 }
 
+constexpr const char* kGantryFriction = R"(friction_of: gantry3
+joints:
+  - {name: x, coulomb_N: 6, viscous_Nspm: 3, offset_N: 0.1, way_m: 3e-5, hysteresis_N: 1, hysteresis_way_m: 5e-3, residual_N: 1.5}
+  - {name: y, coulomb_N: 6, viscous_Nspm: 3, offset_N: 0.1, way_m: 3e-5, hysteresis_N: 1, hysteresis_way_m: 5e-3, residual_N: 1.5}
+  - {name: z, coulomb_N: 6, viscous_Nspm: 3, offset_N: 0.1, way_m: 3e-5, hysteresis_N: 1, hysteresis_way_m: 5e-3, residual_N: 1.5}
+)";
+
+std::string arm_friction() {
+  std::string text = "friction_of: csp6\njoints:\n";
+  for (int i = 1; i <= 6; ++i) {
+    text += "  - {name: arm_" + std::to_string(i) +
+            ", coulomb_Nm: 6, viscous_Nmspr: 3, offset_Nm: 0.1, way_rad: 3e-4, hysteresis_Nm: 1, "
+            "hysteresis_way_rad: 5e-3, residual_Nm: 1.5}\n";
+  }
+  return text;
+}
+
+TEST_F(Schemas, AFrictionFileHasTheKeysThatItsLoaderKnows) {
+  hold("friction", "friction",
+       [](const auto& file) {
+         std::ostringstream text;
+         text << std::ifstream(file).rdbuf();
+         const bool gantry = text.str().find("friction_of: gantry3") != std::string::npos;
+         const std::string robot = gantry ? "gantry3" : "csp6";
+         static_cast<void>(config::read_friction(
+             file, load_robot(in_tree("hw/robots/" + robot + "/robot.yaml"))));
+       },
+       {kGantryFriction, arm_friction()});
+}
+
 TEST_F(Schemas, ACellHasTheKeysThatItsLoaderKnows) {
   const std::string biased =
       "\nsensor_bias: {force_N: [0, 0, 0], torque_Nm: [0, 0, 0], force_tolerance_N: 1, "
       "torque_tolerance_Nm: 0.1}\n";
+  scratch.put("friction/gantry3.yaml", kGantryFriction);
   const std::string gantry = scratch.get("hw/cells/gantry3.yaml");
   hold("cell", "hw/cells", [](const auto& file) { static_cast<void>(load_cell(file)); },
-       {gantry.find("sensor_bias:") == std::string::npos ? gantry + biased : gantry});
+       {gantry.find("sensor_bias:") == std::string::npos ? gantry + biased : gantry,
+        gantry + "\njoint_torque: {friction: ../../friction/gantry3.yaml}\n"});
 }
 
 TEST_F(Schemas, ADriveHasTheKeysThatItsLoaderKnows) {
@@ -251,7 +284,9 @@ TEST_F(Schemas, ARobotHasTheKeysThatItsLoaderKnows) {
   std::string polled = scratch.get("hw/robots/gantry3/robot.yaml");
   polled.erase(polled.find("sensor:"));
   polled.replace(polled.find("gantry3.urdf"), 0, "gantry3/");
-  polled += "sensor: {profile: ../sensors/robotous_rft.yaml, identifiers: {first: 0x21}}\n";
+  polled +=
+      "sensor: {profile: ../sensors/robotous_rft.yaml, identifiers: {first: 0x21}, bus: "
+      "{bitrate_bps: 1000000}}\n";
   hold("robot", "hw/robots", [](const auto& file) { static_cast<void>(load_robot(file)); },
        {polled});
 }

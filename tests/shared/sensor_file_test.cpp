@@ -89,6 +89,17 @@ TEST_F(SensorFile, TheRobotsFileGoesFirst) {
   EXPECT_EQ(sensor.sample_ids, (std::array<std::uint32_t, 2>{0x11, 2}));
 }
 
+TEST_F(SensorFile, ABusOfItsOwnHasABitRate) {
+  EXPECT_EQ(loaded("profile: ati_netcanoem, period_us: 8000").bus(), kArmBus);
+  const ForceTorqueSensor sensor =
+      loaded("profile: ati_netcanoem, period_us: 8000, bus: {bitrate_bps: 250000}");
+  EXPECT_EQ(sensor.bus(), kSensorBus);
+  EXPECT_EQ(sensor.own_bitrate_bps, 250'000U);
+  EXPECT_EQ(refused("profile: robotous_rft, bus: {bitrate_bps: 300000}"),
+            ":23: sensor.bus.bitrate_bps = 300000, must be one of: 20000, 50000, 125000, 250000, "
+            "500000, 800000, 1000000");
+}
+
 TEST_F(SensorFile, ACanopenNodeIsTheSameWithItsProfileAsWithoutOne) {
   const std::string keys =
       "node: 4, force_per_count_N: 0.01, torque_per_count_Nm: 0.0005, force_range_N: 300, "

@@ -16,6 +16,12 @@ const Task& task() {
   return task;
 }
 
+Cell cell_of(std::uint32_t sensor_bitrate_bps) {
+  Cell cell = load_cell(tests::in_tree("hw/cells/gantry3.yaml"));
+  cell.robot.sensor.own_bitrate_bps = sensor_bitrate_bps;
+  return cell;
+}
+
 tests::WholeRun::Options options(sim::Link& link) {
   tests::WholeRun::Options options;
   options.start = "1";
@@ -27,10 +33,10 @@ tests::WholeRun::Options options(sim::Link& link) {
 
 }  // namespace
 
-BoxRun::BoxRun(CanBus& master, CanBus& devices)
+BoxRun::BoxRun(CanBus& master, CanBus& devices, std::uint32_t sensor_bitrate_bps)
     : link_(master, devices, kPatience_ns),
-      lockstep_(load_cell(tests::in_tree("hw/cells/gantry3.yaml")), task(),
-                load_plan(tests::shared_plan("box_1_gantry3")), options(link_)) {}
+      lockstep_(cell_of(sensor_bitrate_bps), task(), load_plan(tests::shared_plan("box_1_gantry3")),
+                options(link_)) {}
 
 bool BoxRun::into_motion() {
   if (!lockstep_.prepare()) return false;

@@ -76,7 +76,7 @@ TEST(CanUtils, CandumpAndOurLogAgreeFrameByFrame) {
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(run.lockstep().cycle());
 
   const tests::ScratchFolder scratch;
-  hw::CandumpLog(scratch.path() / "ours.log", "vcan0").drain(*ring);
+  hw::CandumpLog(scratch.path() / "ours.log", {"vcan0", "vcan1"}).drain(*ring);
   const std::string ours = scratch.get("ours.log");
   const auto frames = static_cast<std::size_t>(std::count(ours.begin(), ours.end(), '\n'));
   ASSERT_GT(frames, 300U * 9U) << "SYNC, three commands, three answers, two of the sensor";

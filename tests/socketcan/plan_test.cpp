@@ -16,8 +16,6 @@ namespace {
 using executor::EndReason;
 using hw::SocketcanBus;
 
-constexpr std::uint32_t kBurst_frames = 5;
-
 void expect_brakes(const sim::Truth& truth) {
   ASSERT_EQ(truth.drives.size(), 3U);
   for (const auto& drive : truth.drives) EXPECT_TRUE(drive.brake_engaged) << drive.joint;

@@ -65,7 +65,7 @@ WholeRun::WholeRun(const Cell& cell, const Task& task, const Plan& plan, const O
         sim::VirtualBus::Parameters{.bitrate_bps = robot.bitrate_bps,
                                     .bit_error_rate = options.bit_error_rate,
                                     .seed = options.seed},
-        robot.master_node);
+        robot.master_node, robot.sensor.own_bitrate_bps);
     bus_faults_ = std::make_unique<sim::BusFaults>(options.faults, robot.master_node, 0, &phases_);
     if (!options.faults.empty()) bus().set_disturbance(bus_faults_.get());
   }

@@ -78,6 +78,7 @@ class WholeRun {
 
   /// Not where another link was given.
   [[nodiscard]] sim::VirtualBus& bus() { return link_->bus(); }
+  [[nodiscard]] sim::VirtualBus& sensor_bus() { return link_->sensor_bus(); }
   [[nodiscard]] const sim::Lockstep::Statistics& statistics() const { return time_->statistics(); }
   [[nodiscard]] hw::DeviceArm& arm() { return *arm_; }
   [[nodiscard]] executor::Controller& controller() { return *controller_; }

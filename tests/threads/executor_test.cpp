@@ -59,7 +59,7 @@ class TwoThreads {
         arm_(hand_made_cell(), plan_.start),
         controller_(hand_made_cell(), plan_, {}),
         runner_(arm_, controller_, recorder_.get(), patient()),
-        telemetry_(log_to(file("run.lcmlog")), 3, &controller_.runner(), *recorder_),
+        telemetry_(log_to(file("run.lcmlog")), hand_made_cell(), &controller_.runner(), *recorder_),
         trace_(file("run.trace"), controller_.runner()) {
     arm_.walls.push_back({0, +1, 0.13});
     recorder_->add(telemetry_);

@@ -37,7 +37,7 @@ TEST(WholePlan, RidesOutOneFaultOfEachKindAndEndsAtTheGoal) {
                recorder.get());
   std::vector<std::string> warnings;
   executor::Telemetry telemetry(
-      executor::open_telemetry("none", folder.path() / "run.lcmlog", warnings), 3,
+      executor::open_telemetry("none", folder.path() / "run.lcmlog", warnings), gantry_cell(),
       &run.controller().runner(), *recorder);
   executor::TraceWriter trace(folder.path() / "run.trace", run.controller().runner());
   recorder->add(telemetry);

@@ -13,6 +13,7 @@
 #include "sim/cell/devices/force_torque_node.h"
 #include "sim/cell/devices/mit_drive.h"
 #include "sim/cell/devices/netcanoem_sensor.h"
+#include "sim/cell/devices/no_sensor.h"
 #include "sim/cell/devices/rft_sensor.h"
 
 namespace tenon::sim {
@@ -77,6 +78,8 @@ std::unique_ptr<VirtualSensor> virtual_sensor(const ForceTorqueSensor& sensor, s
   switch (sensor.protocol) {
     case SensorProtocol::kNode:
       break;
+    case SensorProtocol::kNone:
+      return std::make_unique<NoSensor>();
     case SensorProtocol::kAtiNetcanoem:
       return std::make_unique<NetcanoemSensor>(sensor, seed, imperfections);
     case SensorProtocol::kRobotousRft:

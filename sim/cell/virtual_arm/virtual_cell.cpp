@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "shared/base/error.h"
@@ -16,6 +17,8 @@
 #include "sim/cell/virtual_arm/arm_body.h"
 #include "sim/cell/virtual_arm/cell_watch.h"
 #include "sim/cell/virtual_arm/demand_delay.h"
+#include "sim/cell/virtual_arm/drive_friction.h"
+#include "sim/cell/virtual_arm/effort_mean.h"
 #include "sim/cell/virtual_arm/start_joints.h"
 
 namespace tenon::sim {
@@ -32,10 +35,16 @@ SensorImperfections sensor_imperfections(const WorldDraw& world) {
 }
 
 bool is_sync(const CanFrame& frame) { return frame.id == canopen::kSync && !frame.extended; }
+bool is_arms_sync(const CanFrame& frame) { return is_sync(frame) && frame.bus == kArmBus; }
 
 std::size_t delay_steps(const VirtualCell::Options& options) {
   const double step_s = static_cast<double>(options.physics_step_ns) / kNanosecondsPerSecond;
   return static_cast<std::size_t>(std::lround(options.world.extra_delay_s / step_s));
+}
+
+std::size_t steps_in_cycle(const Robot& robot, const VirtualCell::Options& options) {
+  const std::int64_t steps = std::int64_t{1000} * robot.cycle_us / options.physics_step_ns;
+  return static_cast<std::size_t>(std::max<std::int64_t>(1, steps));
 }
 
 /// Those of devices, the earliest last.
@@ -48,7 +57,8 @@ std::vector<Fault> pending_faults(const Robot& robot, const std::vector<Fault>& 
     const bool of_joint = std::any_of(robot.joints.begin(), robot.joints.end(),
                                       [&](const Joint& joint) { return joint.node == fault.node; });
     const bool nobodys = fault.node == 0 && target_of(fault.kind) != FaultTarget::kSensor;
-    if (of_joint || (fault.node == robot.sensor.node && !nobodys)) continue;
+    const bool of_sensor = fault.node == robot.sensor.node && !robot.sensor.absent();
+    if (of_joint || (of_sensor && !nobodys)) continue;
     throw InputError(std::string("fault ") + to_string(fault.kind) + ": node " +
                      std::to_string(fault.node) + " is neither a joint nor the sensor of robot " +
                      robot.name);
@@ -91,7 +101,9 @@ class VirtualCell::Impl {
         sensor_(
             virtual_sensor(cell_.robot.sensor, options.seed, sensor_imperfections(options.world))),
         delay_(cell.robot.joints.size(), delay_steps(options)),
+        efforts_(cell.robot.joints.size(), steps_in_cycle(cell.robot, options)),
         cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us) {
+    make_friction();
     check_faults();
     if (arm_.overlap_m() > kOverlapMax_m) {
       throw InputError(
@@ -108,6 +120,7 @@ class VirtualCell::Impl {
   [[nodiscard]] bool at_standstill() const;
 
  private:
+  void make_friction();
   void check_faults() const;
   void power_on(std::int64_t now_ns);
   void advance_physics(std::int64_t now_ns);
@@ -134,6 +147,9 @@ class VirtualCell::Impl {
   VirtualDrives drives_;
   std::unique_ptr<VirtualSensor> sensor_;
   DemandDelay delay_;
+  std::vector<FrictionState> friction_;  ///< of the drives; empty: none
+  EffortMean efforts_;                   ///< as the drives report them
+  std::uint32_t powered_ = 0;            ///< bit i: drive i gave effort in the last step
 
   bool on_ = false;
   std::int64_t on_ns_ = 0;
@@ -149,6 +165,13 @@ class VirtualCell::Impl {
 
   CellWatch watch_{cell_.robot, drives_, arm_, phases_};
 };
+
+void VirtualCell::Impl::make_friction() {
+  const std::vector<DriveFriction>& drawn = options_.world.drive_friction;
+  for (std::size_t i = 0; i < drives_.size() && i < drawn.size(); ++i) {
+    friction_.emplace_back(cell_.robot.joints[i], drawn[i], arm_.joint(i).position);
+  }
+}
 
 void VirtualCell::Impl::check_faults() const {
   for (const Fault& fault : faults_to_come_) {
@@ -176,14 +199,13 @@ void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
   incoming_.clear();
   ReceivedFrame received;
   while (bus.receive(received)) incoming_.push_back(received.frame);
-  std::int64_t syncs_left = std::count_if(incoming_.begin(), incoming_.end(), is_sync);
+  std::int64_t syncs_left = std::count_if(incoming_.begin(), incoming_.end(), is_arms_sync);
   for (const CanFrame& frame : incoming_) {
-    if (is_sync(frame)) {
+    if (is_arms_sync(frame)) {
       // Several at once: the caller is late. They came a cycle apart, and act so.
       --syncs_left;
       advance_physics(now_ns - syncs_left * cycle_ns_);
     }
-    if (sensor_->is_asked_by(frame)) pass_wrench();
     deliver(frame, now_ns);
     send(bus, is_sync(frame));
   }
@@ -195,7 +217,11 @@ void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
 }
 
 void VirtualCell::Impl::deliver(const CanFrame& frame, std::int64_t now_ns) {
-  for (const auto& drive : drives_) drive->receive(frame, now_ns);
+  if (frame.bus == kArmBus) {
+    for (const auto& drive : drives_) drive->receive(frame, now_ns);
+  }
+  if (frame.bus != cell_.robot.sensor.bus()) return;
+  if (sensor_->is_asked_by(frame)) pass_wrench();
   sensor_->receive(frame, now_ns);
 }
 
@@ -222,9 +248,18 @@ void VirtualCell::Impl::physics_step() {
                        demand.impedance};
   }
   const std::int64_t before_ns = stopwatch_ns();
-  arm_.step(delay_.delayed(), static_cast<double>(step_ns) / kNanosecondsPerSecond);
+  const std::span<const ServoJoint::Demand> demands = delay_.delayed();
+  arm_.step(demands, static_cast<double>(step_ns) / kNanosecondsPerSecond);
   physics_cost_ns_ += stopwatch_ns() - before_ns;
   physics_ns_ += step_ns;
+  powered_ = 0;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (demands[i].powered && !demands[i].brake) powered_ |= 1U << i;
+    if (i < friction_.size()) friction_[i].update(arm_.joint(i).position, arm_.joint(i).velocity);
+    const bool rubs = i < friction_.size() && (powered_ >> i & 1U) != 0;
+    efforts_.add(i, arm_.joint(i).effort + (rubs ? friction_[i].effort() : 0.0));
+  }
+  efforts_.next();
   for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i]->measured(measure(i), step_ns);
   wrench_sum_ += arm_.wrench();
   ++wrench_count_;
@@ -256,7 +291,7 @@ VirtualDrive::Measurement VirtualCell::Impl::measure(std::size_t i) const {
   const Joint& joint = cell_.robot.joints[i];
   const ServoJoint::State& state = arm_.joint(i);
   return {state.encoder * joint.counts_per_unit + joint.zero_counts,
-          state.velocity * joint.counts_per_unit, kPermille * state.effort / joint.rated_effort};
+          state.velocity * joint.counts_per_unit, kPermille * efforts_.of(i) / joint.rated_effort};
 }
 
 void VirtualCell::Impl::pass_wrench() {
@@ -269,7 +304,11 @@ void VirtualCell::Impl::pass_wrench() {
 void VirtualCell::Impl::send(CanBus& bus, bool arbitrate) {
   outgoing_.clear();
   for (const auto& drive : drives_) drive->take(outgoing_);
+  const std::size_t of_drives = outgoing_.size();
   sensor_->take(outgoing_);
+  for (CanFrame& frame : std::span(outgoing_).subspan(of_drives)) {
+    frame.bus = cell_.robot.sensor.bus();
+  }
   // Frames that become ready together leave by priority.
   if (arbitrate) {
     std::stable_sort(outgoing_.begin(), outgoing_.end(),

@@ -5,6 +5,7 @@
 
 #include "shared/base/error.h"
 #include "shared/base/random.h"
+#include "shared/ports/arm.h"
 
 namespace tenon::sim {
 namespace {
@@ -19,7 +20,7 @@ class Stream {
 
   [[nodiscard]] double next() {
     if (spread_.sigma == 0.0) {
-      return spread_.low + source_.uniform() * (spread_.high - spread_.low);
+      return source_.uniform(spread_.low, spread_.high);
     }
     double value = source_.normal();
     while (std::abs(value) > kSigmasMax) value = source_.normal();
@@ -55,6 +56,24 @@ void grow(std::vector<Shape>& shapes, double by_m, const std::vector<Vector3>& e
     const Vector3 error_m = i < errors_m.size() ? errors_m[i] : Vector3::Zero();
     shapes[i].size_m = grown(shapes[i], by_m, error_m);
   }
+}
+
+/// Of an arm's drives, as many as an arm can have.
+std::vector<DriveFriction> drawn_friction(const DriveFrictionRange& range, std::uint64_t seed) {
+  constexpr double kCoulombLeast = 0.5;     // of what a drive has
+  constexpr double kHysteresisLeast = 0.1;  // the rest is viscous
+  constexpr double kPart = 0.1;
+  Random source(stream_seed(range.seed.value_or(seed), "drive_friction"));
+  std::vector<DriveFriction> drives(kMaxJoints);
+  for (DriveFriction& drive : drives) {
+    const double share = source.uniform(range.share.low, range.share.high);
+    drive.coulomb_share = share * (kCoulombLeast + kPart * source.uniform());
+    drive.hysteresis_share = share * (kHysteresisLeast + kPart * source.uniform());
+    drive.viscous_share = share - drive.coulomb_share - drive.hysteresis_share;
+    drive.way_factor = 0.5 + source.uniform();
+    drive.start = 2.0 * source.uniform() - 1.0;
+  }
+  return drives;
 }
 
 }  // namespace
@@ -101,6 +120,7 @@ WorldDraw draw_world(const WorldRanges& ranges, const Task& task, std::uint64_t 
   draw.extra_delay_s = one("extra_delay_s", ranges.extra_delay_s);
   draw.backlash_m = one("backlash_m", ranges.backlash_m);
   draw.backlash_rad = one("backlash_rad", ranges.backlash_rad);
+  if (ranges.drive_friction) draw.drive_friction = drawn_friction(*ranges.drive_friction, seed);
   draw.sensor_noise_factor = one("sensor_noise_factor", ranges.sensor_noise_factor);
   draw.force_drift_N_sqrts = one("force_drift_N_sqrts", ranges.force_drift_N_sqrts);
   draw.torque_drift_Nm_sqrts = one("torque_drift_Nm_sqrts", ranges.torque_drift_Nm_sqrts);

@@ -9,6 +9,7 @@
 #include "shared/cell/cell.h"
 #include "shared/experiment/world_ranges.h"
 #include "shared/task/task.h"
+#include "sim/cell/virtual_arm/drive_friction.h"
 
 namespace tenon::sim {
 
@@ -28,6 +29,7 @@ struct WorldDraw {
   double extra_delay_s = 0.0;
   double backlash_m = 0.0;
   double backlash_rad = 0.0;
+  std::vector<DriveFriction> drive_friction;  ///< a joint each, or none at all
   double sensor_noise_factor = 1.0;
   double force_drift_N_sqrts = 0.0;
   double torque_drift_Nm_sqrts = 0.0;

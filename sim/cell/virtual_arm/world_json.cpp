@@ -18,6 +18,18 @@ Json list(const std::vector<Vector3>& values) {
   return json;
 }
 
+Json friction_json(const std::vector<DriveFriction>& drives) {
+  Json json = Json::array();
+  for (const DriveFriction& drive : drives) {
+    json.push_back({{"coulomb_share", drive.coulomb_share},
+                    {"viscous_share", drive.viscous_share},
+                    {"hysteresis_share", drive.hysteresis_share},
+                    {"way_factor", drive.way_factor},
+                    {"start", drive.start}});
+  }
+  return json;
+}
+
 }  // namespace
 
 Json by_axis(const Vector6& value) {
@@ -45,6 +57,7 @@ Json world_json(const WorldDraw& world) {
   json["extra_delay_s"] = world.extra_delay_s;
   json["backlash_m"] = world.backlash_m;
   json["backlash_rad"] = world.backlash_rad;
+  json["drive_friction"] = friction_json(world.drive_friction);
   json["sensor_noise_factor"] = world.sensor_noise_factor;
   json["force_drift_N_sqrts"] = world.force_drift_N_sqrts;
   json["torque_drift_Nm_sqrts"] = world.torque_drift_Nm_sqrts;

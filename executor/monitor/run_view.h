@@ -1,5 +1,5 @@
 #pragma once
-// A run as tenon-monitor shows it: messages in, text for a terminal or a file out. Whatever
+// A run as tenon-monitor prints it where there is no terminal: messages in, lines out. Whatever
 // arrives, it shows what it can and counts the rest. Not for real time; one thread.
 
 #include <cstdint>
@@ -17,9 +17,6 @@ namespace tenon::executor {
 
 class RunView {
  public:
-  /// @param terminal one line shows the cycle's state about ten times a second
-  explicit RunView(bool terminal) : terminal_(terminal) {}
-
   /// What is to be written for a message of a channel (telemetry.h), or nothing.
   [[nodiscard]] std::string take(std::string_view channel, std::span<const std::uint8_t> bytes);
   /// What no decoder could make sense of.
@@ -27,16 +24,12 @@ class RunView {
 
  private:
   [[nodiscard]] std::string show(const tenon::cycle_state_t& m);
-  [[nodiscard]] std::string show(const tenon::step_event_t& m);
-  [[nodiscard]] std::string show(const tenon::run_summary_t& m);
+  [[nodiscard]] static std::string show(const tenon::step_event_t& m);
+  [[nodiscard]] static std::string show(const tenon::run_summary_t& m);
   template <typename Message>
   [[nodiscard]] std::string shown(std::span<const std::uint8_t> bytes);
-  [[nodiscard]] std::string line();
 
-  bool terminal_;
-  bool open_line_ = false;
   int state_ = -1;
-  std::int64_t shown_us_ = 0;
   std::uint64_t malformed_ = 0;
 };
 
