@@ -63,7 +63,7 @@ PathJudge::Candidate PathJudge::centred(Plan plan, Certification certification) 
   return again.holds() ? Candidate{std::move(*moved), std::move(again)} : as_is;
 }
 
-Judgement PathJudge::at_speeds(Candidate candidate, std::vector<double>& distances_m) {
+Judgement PathJudge::at_speeds(Candidate&& candidate, std::vector<double>& distances_m) {
   auto& [plan, certification] = candidate;
   const auto refuted = [&](Refutation refutation) {
     distances_m.assign(distances_m.size(), 0.0);

@@ -76,7 +76,7 @@ class PathJudge {
   [[nodiscard]] Candidate centred(Plan plan, Certification certification);
   /// Where the plan does not hold at its speeds, the distances are lowered, to be tried next. At
   /// contact speed throughout there is nothing to lower.
-  [[nodiscard]] Judgement at_speeds(Candidate candidate, std::vector<double>& distances_m);
+  [[nodiscard]] Judgement at_speeds(Candidate&& candidate, std::vector<double>& distances_m);
   /// Envelopes around the chains, widened to more draws until all of a batch stay within them: what
   /// one start in a hundred does is no reason to stop.
   [[nodiscard]] std::variant<Plan, Refutation> widened(const Plan& plan, std::vector<Chain> good);

@@ -3,13 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "shared/base/random.h"
 #include "shared/geometry/solid.h"
+#include "sim/cell/virtual_arm/start_joints.h"
 #include "tests/sim/arm_bench.h"
 #include "tests/support/meshes.h"
+#include "tests/support/planned.h"
 
 namespace tenon::sim {
 namespace {
@@ -110,6 +115,45 @@ TEST(ArmPresses, OnABox) {
 TEST(ArmPresses, OnAMeshThatIsThinnerThanTheWay) {
   for (const double beyond_m : {1e-4, 5e-4}) {
     expect_springs_in_series(pressed(plate(Shape::Kind::kSolid, 4e-4), beyond_m), beyond_m);
+  }
+}
+
+// Eight rows of friction on a part that is next to massless: the solver must tell them apart.
+TEST(ArmPresses, AndSlidesInACornerOfTheTableWithASolverThatNeverGivesUp) {
+  constexpr double kPerSegment_s = 0.1;
+  constexpr double kSpeed_mps = 0.05;
+  const Cell& cell = tests::gantry_cell();
+  Pose corner = tests::box_start("1").pose;
+  corner.position_m.head<2>() = Eigen::Vector2d(-0.449, -0.349);  // 1 mm off both walls
+  ArmBody::Parameters parameters;
+  parameters.start = start_joints(cell, corner);
+  parameters.X_BE = cell.X_BT;
+  parameters.contact_law.stiffness_Npm = cell.contact_stiffness_Npm;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(seed);
+    ArmBody arm(cell, tests::box_task(), parameters);
+    std::vector<ServoJoint::Demand> demands(3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      ArmBench::enable(demands[i]);
+      demands[i].position = parameters.start[i];
+      demands[i].effort_max = cell.robot.joints[i].effort_max;
+    }
+    double touched_N = 0.0;
+    for (int segment = 0; segment < 40; ++segment) {
+      const double to_m[] = {random.uniform(-1.5e-3, 3e-3), random.uniform(-1.5e-3, 3e-3)};
+      for (double left_s = kPerSegment_s; left_s > 0.0; left_s -= kStep_s) {
+        for (std::size_t i = 0; i < 2; ++i) {
+          const double way_m = parameters.start[i] + to_m[i] - demands[i].position;
+          const double step_m = std::clamp(way_m, -kSpeed_mps * kStep_s, kSpeed_mps * kStep_s);
+          demands[i].velocity = step_m / kStep_s;
+          demands[i].position += step_m;
+        }
+        arm.step(demands, kStep_s);
+        touched_N = std::max(touched_N, arm.contact_force_N());
+      }
+    }
+    EXPECT_GT(touched_N, 5.0) << seed;
+    EXPECT_EQ(arm.solver_messages(), 0U) << seed;
   }
 }
 

@@ -15,6 +15,10 @@ constexpr double kGravity_mps2 = 9.80665;
 constexpr double kLinkRadius_m = 0.15;
 constexpr double kPayloadRadius_m = 0.05;
 constexpr double kPayloadMassMin_kg = 0.01;
+// m/(Ns), of friction as of all that is stiff: 20 N let a part creep by 2 um in a second. With a
+// hundredth of it the solver takes the rows of friction on a part that is next to massless for one
+// another, and gives up.
+constexpr double kSoftness = 1e-7;
 
 Eigen::Matrix3d rotation_of_body(dBodyID body) {
   const dReal* r = dBodyGetRotation(body);  // rows of four
@@ -50,6 +54,7 @@ ArmBody::ArmBody(const Cell& cell, const Task& task, const Parameters& parameter
       contact_law_(parameters.contact_law),
       gravity_mps2_(-kGravity_mps2 * cell.up_B) {
   dWorldSetGravity(world_.id(), gravity_mps2_.x(), gravity_mps2_.y(), gravity_mps2_.z());
+  dWorldSetCFM(world_.id(), kSoftness);
   build(cell, parameters);
   const double series_Npm = parameters.contact_law.stiffness_Npm;
   contact_law_.stiffness_Npm = part_stiffness_Npm(series_Npm);
