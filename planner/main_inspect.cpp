@@ -1,22 +1,30 @@
-// tenon-inspect: what a plan file says, whether it still holds, and why it works.
+// tenon-inspect: what a plan file says, whether it still holds, why it works, and how a run of it
+// went.
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "executor/recorded/result_file.h"
+#include "executor/recorded/run_log.h"
 #include "planner/cell_fit.h"
 #include "planner/goal_certainty.h"
 #include "planner/report/html_report.h"
 #include "planner/report/inspection.h"
+#include "planner/report/report_data.h"
+#include "planner/report/run_page.h"
 #include "planner/report/summary.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
+#include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/system/fan_out.h"
 #include "sim/physics/rollout/ode_rollout.h"
@@ -32,6 +40,8 @@ struct Arguments {
   std::string json;
   std::string task;
   std::string report;
+  std::string run;
+  std::string log;
   std::string recertify;
   std::string cell;
   std::size_t threads = all_cores();
@@ -42,13 +52,21 @@ void describe(CLI::App& app, Arguments& a) {
   app.footer(
       "Example: tenon-inspect plan.tnp --recertify planner/tasks/box_on_table_2d.yaml\n"
       "         tenon-inspect plan.tnp --task planner/tasks/box_on_table_2d.yaml --report "
-      "out.html");
+      "out.html\n"
+      "         tenon-inspect plan.tnp --task planner/tasks/box_on_table_2d.yaml --run result.json "
+      "--log run.lcmlog --report run.html");
   app.add_option("plan", a.plan, "Plan file")->required();
   app.add_option("--json", a.json,
                  "File for everything that the plan holds, - for standard output");
-  CLI::Option* task = app.add_option("--task", a.task, "Task file that the plan was made from");
-  app.add_option("--report", a.report, "HTML file: the plan seen from above, and why it works")
-      ->needs(task);
+  app.add_option("--task", a.task, "Task file that the plan was made from");
+  CLI::Option* report =
+      app.add_option("--report", a.report,
+                     "HTML file: the plan seen from above, and why it works; with --run or --log "
+                     "the run, laid over it");
+  app.add_option("--run", a.run, "Result of a run of the plan, as tenon-exec --json wrote it")
+      ->needs(report);
+  app.add_option("--log", a.log, "Log of a run of the plan, as tenon-exec --log wrote it")
+      ->needs(report);
   app.add_option("--recertify", a.recertify,
                  "Task file: simulate the plan's whole chain and its validation again; exit status "
                  "1 if they are not what the plan says");
@@ -152,23 +170,43 @@ Verdict recertify(const Arguments& a, const Plan& plan, const std::vector<std::u
   return verdict;
 }
 
-void write_report(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes) {
+// The run that the report is of; none where it is of the plan alone.
+std::optional<RecordedRun> run_of(const Arguments& a, const Plan& plan) {
+  if (a.run.empty() && a.log.empty()) return std::nullopt;
+  if (a.run.empty()) return executor::read_run_log(a.log, plan);
+  const RecordedRun result = executor::read_run_result(a.run, config::read_file(a.run), plan);
+  if (a.log.empty()) return result;
+  return executor::joined(executor::read_run_log(a.log, plan), result, a.log, a.run);
+}
+
+std::string report_of(const Arguments& a, const Plan& plan,
+                      const std::vector<std::uint8_t>& bytes) {
+  const std::optional<RecordedRun> run = run_of(a, plan);
+  if (run && a.task.empty()) return planner::run_report(plan, *run, nullptr);
   const Task task = task_of(plan, a.task, a.cell).task;
   planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
-  write_file(a.report,
-             planner::html_report(
-                 plan, task, planner::certify(bytes, task, pool),
-                 planner::validate(plan, task, planner::start_of(plan, task), kReportDraws, pool)));
+  const planner::Certification certification = planner::certify(bytes, task, pool);
+  const planner::Validation validation =
+      planner::validate(plan, task, planner::start_of(plan, task), kReportDraws, pool);
+  if (!run) return planner::html_report(plan, task, certification, validation);
+  const planner::ReportData data = planner::report_data(plan, task, certification, validation);
+  return planner::run_report(plan, *run, &data);
 }
 
 int run(const Arguments& a) {
-  check_apart(
-      {{"--json", a.json}, {"--report", a.report}},
-      {{"the plan", a.plan}, {"--task", a.task}, {"--recertify", a.recertify}, {"--cell", a.cell}});
+  check_apart({{"--json", a.json}, {"--report", a.report}}, {{"the plan", a.plan},
+                                                             {"--task", a.task},
+                                                             {"--recertify", a.recertify},
+                                                             {"--cell", a.cell},
+                                                             {"--run", a.run},
+                                                             {"--log", a.log}});
+  if (!a.report.empty() && a.task.empty() && a.run.empty() && a.log.empty()) {
+    throw InputError("--report needs --task TASK.yaml, or a run of the plan (--run, --log)");
+  }
   const Plan plan = load_plan(a.plan);
   const std::vector<std::uint8_t> bytes = bytes_of(a.plan);
   const Verdict verdict = a.recertify.empty() ? Verdict{} : recertify(a, plan, bytes);
-  if (!a.report.empty()) write_report(a, plan, bytes);
+  if (!a.report.empty()) write_file(a.report, report_of(a, plan, bytes));
   if (a.json == "-") {
     std::fputs(planner::plan_json(plan, bytes.size()).c_str(), stdout);
   } else {

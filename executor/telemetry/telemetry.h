@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "executor/motion/plan_runner.h"
+#include "executor/record/channels.h"
 #include "executor/telemetry/event_log.h"
 #include "executor/telemetry/recorder.h"
 #include "executor/telemetry/run_result.h"
@@ -29,11 +30,6 @@ class run_setup_t;
 namespace tenon::executor {
 
 inline constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
-inline constexpr const char* kCycleChannel = "TENON_CYCLE";
-inline constexpr const char* kStepChannel = "TENON_STEP";
-inline constexpr const char* kRunChannel = "TENON_RUN";
-inline constexpr const char* kSetupChannel = "TENON_SETUP";
-inline constexpr const char* kStatusChannel = "TENON_STATUS";
 
 /// Where telemetry goes to; either may be missing.
 struct TelemetryOutputs {

@@ -4,30 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "planner/report/drops.h"
 #include "planner/report/page_data.h"
 #include "planner/report/pictures.h"
+#include "planner/report/plan_sections.h"
 #include "planner/report/report_data.h"
 #include "planner/report/report_words.h"
 #include "planner/report/summary.h"
-#include "planner/report/touched.h"
-#include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
 #include "shared/drawing/page.h"
-#include "shared/drawing/step_words.h"
 #include "shared/drawing/view.h"
 
 namespace tenon::planner {
 namespace {
-
-ReportData data_of(const Plan& plan, const Task& task, const Certification& certification,
-                   const Validation& validation) {
-  const std::vector<Chain>& chains = certification.runs.front().chains;
-  ReportData data{plan, task, chains, certification.holds(), validation, {}};
-  data.nodes = nodes_of(data.is_baseline() ? finished(validation) : chains, task);
-  return data;
-}
 
 std::string verdict(const ReportData& data) {
   const Plan& plan = data.plan;
@@ -47,10 +36,6 @@ std::string verdict(const ReportData& data) {
   return text + "</p>\n";
 }
 
-std::string badge(bool good, const std::string& text) {
-  return std::string("<li class='") + (good ? "good" : "bad") + "'>" + text + "</li>\n";
-}
-
 /// What was checked, and came out how.
 std::string badges(const ReportData& data) {
   const Plan& plan = data.plan;
@@ -64,92 +49,6 @@ std::string badges(const ReportData& data) {
          badge(data.validation.at_goal() == data.validation.draws.size(),
                "Repeated for this page: " + estimate_text(data.validation, data.task)) +
          "</ul>\n";
-}
-
-std::string reason(const ReportData& data, int axis) {
-  const double before = data.nodes.front().spread[axis];
-  const double after = data.nodes.back().spread[axis];
-  std::string html = "<li><b>" + std::string(axis_name(axis)) + " " + amount(before, axis) +
-                     " &rarr; " + amount(after, axis) + "</b>";
-  const std::vector<Drop> drops = drops_along(data, axis);
-  if (drops.empty()) return html + ": no step needs to make it more certain</li>\n";
-  html += "<ul>\n";
-  for (const Drop& drop : drops) {
-    html += format("<li><button type='button' class='jump' data-step='%zu'>step %zu</button> ",
-                   drop.step + 1, drop.step) +
-            amount(drop.before, axis) + " &rarr; " + amount(drop.after, axis) + ": " +
-            drawing::escaped(drop.why) + "</li>\n";
-  }
-  return html + "</ul></li>\n";
-}
-
-/// Each direction, and the steps that settle it.
-std::string reasons(const ReportData& data) {
-  if (data.is_baseline() || data.nodes.empty()) return {};
-  std::string items;
-  for (int axis = 0; axis < 6; ++axis) {
-    if (has(data.plan.coordinates, axis)) items += reason(data, axis);
-  }
-  return "<section aria-labelledby='why'><h2 id='why'>Why it works</h2>\n<p>Wherever the tool "
-         "starts, contact puts it at a known place. Standard deviation of each direction at the "
-         "start and at the end, and the steps that make the difference:</p>\n<ul class='why'>\n" +
-         items + "</ul></section>\n";
-}
-
-std::string envelope_text(const Plan& plan, const OutcomeRule& rule) {
-  if (!plan.check_envelopes) return "not checked";
-  std::string text;
-  for (int axis = 0; axis < 6; ++axis) {
-    if (!has(plan.coordinates, axis)) continue;
-    text += format("%s%s %.1f to %.1f", text.empty() ? "" : ", ", axis_name(axis),
-                   shown(rule.envelope.travelled_min[axis], axis),
-                   shown(rule.envelope.travelled_max[axis], axis));
-  }
-  text += "; contacts " + to_string(rule.envelope.always);
-  if (rule.envelope.possible != rule.envelope.always) {
-    text += " (possible " + to_string(rule.envelope.possible) + ")";
-  }
-  return text;
-}
-
-/// The cells that stand once a step, whichever outcomes it may have.
-std::string step_cells(const ReportData& data, std::size_t index) {
-  const Step& step = data.plan.steps[index];
-  std::string html =
-      format("<th scope='row'><button type='button' class='jump' data-step='%zu'>%zu</button></th>",
-             index + 1, index) +
-      "<td data-label='Move'>" + drawing::displacement_text(step) +
-      format("</td><td class='num' data-label='Slow from'>%.0f mm</td>", 1e3 * step.slow_from_m);
-  if (index + 1 >= data.nodes.size()) return html + "<td></td><td></td>";
-  return html + "<td data-label='Particles'>" + outcomes_text(data, index) +
-         "</td><td data-label='Touches'>" + names_of(touched_after(data, index)) + "</td>";
-}
-
-std::string table(const ReportData& data) {
-  const Plan& plan = data.plan;
-  std::string html =
-      "<div class='wide'><table class='moves'><thead><tr><th>Step</th><th>Move</th>"
-      "<th>Slow from</th><th>Particles</th><th>Touches</th>"
-      "<th>Outcome</th><th>Expected travel (mm, deg) and contacts</th><th>Next</th>"
-      "</tr></thead>\n<tbody>\n";
-  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
-    bool first = true;
-    for (const Outcome outcome : kOutcomes) {
-      const OutcomeRule& rule = plan.steps[i].rule(outcome);
-      if (rule.successor == kSuccessorFail) continue;
-      html += format("<tr data-step='%zu'>", i + 1) +
-              (first ? step_cells(data, i) : "<td></td><td></td><td></td><td></td><td></td>") +
-              format("<td data-label='Outcome'>%s</td>", to_string(outcome)) +
-              "<td data-label='Expected'>" + envelope_text(plan, rule) +
-              "</td><td data-label='Next'>" +
-              (rule.successor == kSuccessorDone ? std::string("done")
-                                                : std::to_string(rule.successor)) +
-              "</td></tr>\n";
-      first = false;
-    }
-  }
-  return html + "</tbody></table></div>\n<p>Any other outcome" +
-         (plan.check_envelopes ? ", travel or contact" : "") + " stops the execution.</p>\n";
 }
 
 /// What stands still: in print, and where no script runs.
@@ -168,7 +67,7 @@ std::string stills(const ReportData& data) {
 
 std::string html_report(const Plan& plan, const Task& task, const Certification& certification,
                         const Validation& validation) {
-  const ReportData data = data_of(plan, task, certification, validation);
+  const ReportData data = report_data(plan, task, certification, validation);
   const std::string task_name = drawing::escaped(plan.task_name);
   const std::string start_name = drawing::escaped(plan.start_name);
   drawing::LivePage page;
@@ -177,12 +76,7 @@ std::string html_report(const Plan& plan, const Task& task, const Certification&
                  start_name + "</span></h1>\n" + verdict(data) + badges(data);
   page.body =
       "<section class='stage' aria-label='The plan in motion' data-part='stage'></section>\n" +
-      stills(data) + reasons(data) +
-      "<section aria-labelledby='uncertainty'><h2 id='uncertainty'>Uncertainty over the "
-      "steps</h2>\n<div data-part='uncertainty'></div><div class='still'>" +
-      uncertainty_chart(data) +
-      "</div></section>\n<section aria-labelledby='moves'><h2 id='moves'>Moves</h2>\n" +
-      table(data) + "</section>\n";
+      stills(data) + reasons(data) + uncertainty_section(data) + moves_section(data);
   page.json = page_json(data);
   return drawing::live_document(page);
 }

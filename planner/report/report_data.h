@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "planner/judge/certification.h"
 #include "planner/judge/chain.h"
 #include "planner/judge/validation.h"
 #include "planner/report/belief_nodes.h"
@@ -24,5 +25,11 @@ struct ReportData {
 
   [[nodiscard]] bool is_baseline() const { return plan.method != PlanMethod::kMha; }
 };
+
+/// Of a plan. @param certification of it; its first run gives the particles' paths. All outlive the
+/// data
+[[nodiscard]] ReportData report_data(const Plan& plan, const Task& task,
+                                     const Certification& certification,
+                                     const Validation& validation);
 
 }  // namespace tenon::planner

@@ -1,0 +1,23 @@
+#pragma once
+// What the readers of logs and of results have in common: of which plan a record is, and what its
+// end is called. Pure; offline.
+
+#include <string>
+
+#include "executor/faults/end_reason.h"
+#include "shared/plan/plan.h"
+
+namespace tenon::executor {
+
+/// @param file that is read, for the message
+/// @throws InputError unless task and start are the plan's
+void check_named(const std::string& file, const std::string& task, const std::string& start,
+                 const Plan& plan);
+
+/// Whether a run that ends so went wrong: it was neither done nor stopped by the user.
+[[nodiscard]] bool is_fault(EndReason reason);
+
+/// "force fault", "arm fault: heartbeat lost". @param arm_fault a number of ArmFaultKind
+[[nodiscard]] std::string named(EndReason reason, int arm_fault);
+
+}  // namespace tenon::executor
