@@ -15,6 +15,19 @@ function placed(pose, v) {
   return [pose[0] + r[0], pose[1] + r[1], pose[2] + r[2]];
 }
 
+// A pose that stands in another one.
+function composed(a, b) {
+  const [w, x, y, z] = a.slice(3);
+  const [bw, bx, by, bz] = b.slice(3);
+  return [
+    ...placed(a, b),
+    w * bw - x * bx - y * by - z * bz,
+    w * bx + x * bw + y * bz - z * by,
+    w * by - x * bz + y * bw + z * bx,
+    w * bz + x * by - y * bx + z * bw,
+  ];
+}
+
 // Straight in position, and at constant speed about one axis in orientation.
 function between(a, b, part) {
   if (part <= 0) return a;

@@ -1,5 +1,17 @@
 // A recorded run at a time in seconds: where the part was, what it touched, and what the executor felt.
 
+// The last of ascending times that is not after the time.
+function momentAt(times, time) {
+  let low = 0;
+  let high = times.length - 1;
+  while (low < high) {
+    const middle = Math.ceil((low + high) / 2);
+    if (times[middle] <= time + 1e-9) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}
+
 class Replay {
   constructor(recording, steps) {
     this.recording = recording;
@@ -15,15 +27,7 @@ class Replay {
 
   // The moment that has begun last.
   indexAt(time) {
-    const { times_s } = this.recording;
-    let low = 0;
-    let high = times_s.length - 1;
-    while (low < high) {
-      const middle = Math.ceil((low + high) / 2);
-      if (times_s[middle] <= time + 1e-9) low = middle;
-      else high = middle - 1;
-    }
-    return low;
+    return momentAt(this.recording.times_s, time);
   }
 
   poseAt(time) {

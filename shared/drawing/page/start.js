@@ -5,4 +5,5 @@
   document.documentElement.classList.add("live");
   if (data.kind === "plan") new PlanPage(data);
   if (data.kind === "evaluation") new EvaluationPage(data);
+  if (data.kind === "run") new RunPage(data);
 }
