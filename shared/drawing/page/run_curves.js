@@ -71,7 +71,10 @@ class RunCurves {
       times: times_s,
       range: (_, low, high) => {
         const seen = Math.max(Math.abs(low ?? 0), Math.abs(high ?? 0), 1.2 * on);
-        return [-1.08 * seen, 1.08 * seen];
+        // A limit that is far off would make everything small.
+        const near = [limit, fault].filter((value) => value && seen > 0.6 * value);
+        const end = 1.08 * Math.max(seen, ...near);
+        return [-end, end];
       },
       draw: (chart, context, ratio) => {
         this.drawThresholds(chart, context, ratio, names);
@@ -214,7 +217,7 @@ class RunCurves {
       title: "Its distance from the command",
       unit,
       digits: 3,
-      height: 120,
+      height: 140,
       times: this.curves.times_s,
       series: [{ name: "measured less commanded", values: times(factor, joint.off), colour: "curve-b" }],
       label: `Joint ${joint.name}: measured less commanded over time, at most ${most} ${unit}`,
@@ -234,7 +237,10 @@ class RunCurves {
       height: 200,
       times: times_s,
       scale: { distr: 3 },
-      range: (_, low, high) => [Math.max(1, (low ?? 1) / 1.5), 1.5 * Math.max(high ?? 10, period_us ?? 10)],
+      range: (_, low, high) => [
+        10 ** Math.floor(Math.log10(low ?? 1)),
+        1.5 * Math.max(high ?? 10, period_us ?? 10),
+      ],
       series: [
         { name: "awake after the due time", values: shown(wakeup_late_us), colour: "curve-a" },
         { name: "computing", values: shown(compute_us), colour: "curve-b" },

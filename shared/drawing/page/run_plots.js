@@ -20,9 +20,9 @@ const OUTCOME_COLOURS = {
 // One plot with its heading and its legend.
 class Plot {
   // series: {name, values, colour, dash, width, hidden, with}; `with` names another one that it goes on and off with.
-  // draw: called with the plot after its grid and before its curves.
-  constructor(plots, { title, unit, digits, height, series, times, scale, range, draw, note, label }) {
-    Object.assign(this, { plots, unit, digits, height, series, times, draw });
+  // draw: called with the plot between its grid and its curves; bare: without a grid.
+  constructor(plots, { title, unit, digits, height, series, times, scale, range, draw, note, label, bare }) {
+    Object.assign(this, { plots, unit, digits, height, series, times, draw, bare });
     this.key = element("div", { class: "legend curves-key" });
     this.canvas = element("div", { class: "plot", role: "img", "aria-label": label });
     this.heading = element("h3", {}, title);
@@ -51,10 +51,17 @@ class Plot {
       height: this.height,
       legend: { show: false },
       scales: { x: { time: false }, y: { ...scale, ...(range ? { range } : {}) } },
-      axes: [
-        axis({ size: 26, values: (_, ticks) => ticks.map((tick) => tick + " s") }),
-        axis({ size: 52, values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : String(tick))) }),
-      ],
+      axes: this.bare
+        ? [{ show: false }, axis({ size: 52, grid: { show: false }, values: () => [] })]
+        : [
+            axis({ size: 26, values: (_, ticks) => ticks.map((tick) => tick + " s") }),
+            axis({
+              size: 52,
+              space: 24,
+              values: (_, ticks) => ticks.map((tick) => this.nameOf(tick, scale)),
+            }),
+          ],
+      padding: this.bare ? [4, 16, 4, 0] : [8, 16, 0, 0],
       cursor: { sync: { key: "run" }, y: false, points: { show: false }, drag: { x: true, y: false } },
       series: [
         {},
@@ -67,11 +74,18 @@ class Plot {
         })),
       ],
       hooks: {
-        drawClear: [(chart) => this.drawUnder(chart)],
+        drawClear: [(chart) => this.plots.drawBands(chart)],
+        drawAxes: [(chart) => inPlot(chart, (context, ratio) => this.draw?.(chart, context, ratio))],
         draw: [(chart) => this.plots.drawOver(chart)],
         setScale: [(chart, name) => name === "x" && this.plots.follow(chart)],
       },
     };
+  }
+
+  // Powers of ten are named on a logarithmic scale, and what any other scale has.
+  nameOf(tick, scale) {
+    if (tick === null || (scale?.distr === 3 && !Number.isInteger(Math.log10(tick)))) return "";
+    return String(tick);
   }
 
   // Of a curve: its name, its value where the player is, and whether it is shown.
@@ -107,11 +121,6 @@ class Plot {
       const at = event.clientX - this.chart.over.getBoundingClientRect().left;
       this.plots.jump(this.chart.posToVal(at, "x"));
     });
-  }
-
-  drawUnder(chart) {
-    this.plots.drawBands(chart);
-    if (this.draw) inPlot(chart, (context, ratio) => this.draw(chart, context, ratio));
   }
 
   resize() {
@@ -161,11 +170,13 @@ function horizontal(chart, context, ratio, { value, from, to, colour, dash, widt
 class RunPlots {
   // spans: steps in time; faults: those whose time is known; jump: called with a time in s.
   constructor(host, { spans, faults, end, jump }) {
-    Object.assign(this, { host, spans, faults, end, jump });
+    Object.assign(this, { spans, faults, end, jump });
+    this.host = element("div");
+    host.append(this.host);
     this.plots = [];
     this.time = 0;
     this.buildStrip();
-    new ResizeObserver(() => this.resize()).observe(host);
+    new ResizeObserver(() => this.resize()).observe(this.host);
     onColours(() => this.redraw());
   }
 
@@ -221,7 +232,8 @@ class RunPlots {
     );
     this.strip = new Plot(this, {
       title: "Steps",
-      height: 72,
+      bare: true,
+      height: 42,
       series: [{ name: "", values: [null, null], colour: "ink", with: "" }],
       times: [0, this.end],
       range: () => [0, 1],
