@@ -265,7 +265,7 @@ Json bare_plan(const Plan& plan) {
                {"goal", Json::parse(drawing::pose_json(plan.goal))},
                {"goal_tolerance_m", plan.goal_tolerance_m}};
   const double way_m = (plan.goal.position_m - plan.start.position_m).norm();
-  json["scene"] = {{"held", {tip_json(std::max(0.03 * way_m, 1e-3))}},
+  json["scene"] = {{"held", {tip_json(std::max(0.04 * way_m, 1e-3))}},
                    {"environment", Json::array()}};
   json["coordinates"] = Json::array();
   for (int axis = 0; axis < 6; ++axis) {

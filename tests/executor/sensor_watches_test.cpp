@@ -96,7 +96,7 @@ Robot robot() {
   return robot;
 }
 
-constexpr std::int64_t kCycle_ns = 2'000'000;
+constexpr std::int64_t kWatchedCycle_ns = 2'000'000;
 constexpr std::uint32_t kAll = 7;
 
 // Full speed is 0.5 m/s, 1 mm a cycle.
@@ -106,7 +106,7 @@ TEST(EncoderWatch, AtRestAJointGoesNoFurtherThanItsFullSpeedAllows) {
     JointVector at{};
     for (int cycle = 0; cycle < 100; ++cycle) {
       if (cycle == 50) at[1] = jump_m;
-      const auto jump = watch.update(at, kAll, cycle * kCycle_ns);
+      const auto jump = watch.update(at, kAll, cycle * kWatchedCycle_ns);
       ASSERT_EQ(jump.has_value(), cycle == 50 && std::abs(jump_m) > 0.001) << jump_m;
       if (jump) {
         EXPECT_EQ(jump->joint, 1);
@@ -127,13 +127,13 @@ TEST(EncoderWatch, WhatAJointMakesUpForIsNoJump) {
   for (int cycle = 0; cycle < 1000; ++cycle) {
     const bool stands = cycle % 50 < 4;
     const bool silent = cycle % 70 < 5;
-    if (cycle % 90 == 0) now_ns += 10 * kCycle_ns;
+    if (cycle % 90 == 0) now_ns += 10 * kWatchedCycle_ns;
     if (!stands) measured_m = commanded_m;
     const auto jump = watch.update({measured_m, measured_m, measured_m}, silent ? 0 : kAll, now_ns);
     ASSERT_FALSE(jump) << "cycle " << cycle << ": " << jump->moved << " beyond " << jump->bound;
     commanded_m += 0.001;
     watch.commanded({commanded_m, commanded_m, commanded_m});
-    now_ns += kCycle_ns;
+    now_ns += kWatchedCycle_ns;
   }
 }
 
@@ -143,7 +143,7 @@ TEST(EncoderWatch, AJumpAgainstTheMotionIsNamedInTheFastestMoveToo) {
   for (int cycle = 0; cycle < 200; ++cycle) {
     at_m += 0.001;
     const double read_m = cycle >= 100 ? at_m - 0.003 : at_m;
-    const auto jump = watch.update({read_m, 0.0, 0.0}, kAll, cycle * kCycle_ns);
+    const auto jump = watch.update({read_m, 0.0, 0.0}, kAll, cycle * kWatchedCycle_ns);
     ASSERT_EQ(jump.has_value(), cycle == 100) << cycle;
     watch.commanded({at_m, 0.0, 0.0});
   }

@@ -248,7 +248,7 @@ class RunCurves {
       draw: (chart, context, ratio) => this.drawLate(chart, context, ratio, period_us),
       note:
         (period_us ? `Thick line: the period, ${period_us} µs. ` : "") +
-        (late ? `${late} cycles were late: red marks at the foot.` : "No cycle was late."),
+        (late ? `Late cycles: ${late}, red marks at the foot.` : "No cycle was late."),
       label:
         `Timing over time: awake at most ${largest(wakeup_late_us).toFixed(0)} µs after the due time, ` +
         `computing at most ${largest(compute_us).toFixed(0)} µs, ${late} late cycles`,

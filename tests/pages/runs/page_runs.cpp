@@ -1,0 +1,96 @@
+// Runs for the run's page, executed in virtual time against the virtual arm and written down as
+// tenon-exec does: NAME.lcmlog and NAME.json for each.
+//
+//   page_runs FOLDER
+//
+// box: to its end, some of its cycles late. fault: a drive that falls silent in step 2. missed: an
+// environment that is nowhere near where the plan looks for it.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "executor/telemetry/recorder.h"
+#include "executor/telemetry/run_result.h"
+#include "executor/telemetry/telemetry.h"
+#include "hw/arm/describe_fault.h"
+#include "shared/config/load.h"
+#include "shared/system/monotonic_clock.h"
+#include "tests/support/places.h"
+#include "tests/support/whole_run.h"
+
+namespace {
+
+using namespace tenon;
+
+/// Records as they come, with bad times for the clock here and there: virtual time knows none.
+class LateNow final : public executor::CycleSink {
+ public:
+  explicit LateNow(executor::Recorder& recorder) : recorder_(recorder) {}
+
+  void record(const executor::CycleRecord& record) noexcept override {
+    executor::CycleRecord changed = record;
+    changed.wakeup_late_ns = record.sequence % 997 == 996 ? 2'400'000 : 60'000;
+    changed.compute_ns = 150'000;
+    changed.late_cycles = static_cast<std::uint32_t>(record.sequence / 997);
+    recorder_.record(changed);
+    recorder_.drain();
+  }
+
+ private:
+  executor::Recorder& recorder_;
+};
+
+void write_run(const std::filesystem::path& folder, const std::string& name,
+               const tests::WholeRun::Options& options) {
+  const Cell cell = load_cell(tests::gantry_cell_file());
+  const Task task = load_task(tests::box_task_file());
+  const Plan plan = load_plan(tests::shared_plan("box_4_gantry3"));
+  const auto recorder = std::make_unique<executor::Recorder>();
+  LateNow sink(*recorder);
+  tests::WholeRun run(cell, task, plan, options, &sink);
+  std::vector<std::string> warnings;
+  executor::BusView bus;
+  // Rates are told by the wall's clock, which virtual time has no part in.
+  bus.traffic = [&cell] {
+    const double bits = 1e-9 * static_cast<double>(monotonic_now_ns()) * cell.robot.bitrate_bps;
+    CanBusTraffic traffic;
+    traffic.nominal_bits = static_cast<std::uint64_t>(0.4 * bits);
+    traffic.worst_bits = static_cast<std::uint64_t>(0.5 * bits);
+    return traffic;
+  };
+  bus.load_most = 0.85;
+  const std::string log = folder / (name + ".lcmlog");
+  executor::Telemetry telemetry(executor::open_telemetry("none", log, warnings), cell,
+                                &run.controller().runner(), *recorder, bus);
+  recorder->add(telemetry);
+  telemetry.publish_setup();
+  const tests::WholeRun::Result ended = run.run();
+  const std::string fault = hw::fault_text(run.arm().fault(), cell.robot);
+  const executor::RunResult result =
+      executor::gather_result(run.controller(), run.runner(), 0, fault);
+  telemetry.publish_summary(result, run.controller().record());
+  (void)telemetry.close_log();
+  write_file(folder / (name + ".json"), executor::to_json(result, cell));
+  std::printf("%s: %s\n", name.c_str(), ended.reason.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  tests::WholeRun::Options options;
+  options.start = "4";
+  options.seed = 3;
+  options.offset[0] = -0.034;
+  options.offset[1] = 0.0094;
+  write_run(argv[1], "box", options);
+  tests::WholeRun::Options missed = options;
+  missed.offset[0] = 0.3;
+  write_run(argv[1], "missed", missed);
+  options.faults = {sim::parse_fault("silent-node:node=2,at=step:2")};
+  write_run(argv[1], "fault", options);
+  return 0;
+}
