@@ -23,7 +23,7 @@ from plan_page import BYTES_MAX, ROOT, Failures, look_at, press
 PLAN = "box_4_gantry3"
 HEADING_BYTES = 28
 # Of a cycle's message: 8 bytes of hash, 4 times, 3 small numbers, step, phase, signature; then doubles.
-STEP_AT, POSE_AT, WRENCH_AT = 8 + 32 + 3, 48, 48 + 8 * 27
+POSE_AT, WRENCH_AT = 48, 48 + 8 * 27
 STATES_WITH_FORCES = range(2, 11)  # behind the taring
 
 
@@ -133,11 +133,12 @@ def use(browser, page, failures):
     browser.wait_for(f"{ROOT}.zoom === 'all'")
     browser.evaluate("(() => { const s = document.querySelector('h3 select'); s.value = '2';"
                      " s.dispatchEvent(new Event('change')); })()")
-    labels = browser.evaluate("[...document.querySelectorAll('.plot')].map(p => p.getAttribute('aria-label')).join()")
+    labels = browser.evaluate("[...document.querySelectorAll('.plot canvas')].map(p => p.getAttribute('aria-label')).join()")
     joint = data_of(browser)["run"]["curves"]["joints"][2]["name"]
     failures.check(f"Joint {joint} over time" in labels, f"{name}: the third joint is not shown: {labels}")
     for wanted in ("Steps over time", "Force on the tool", "Torque", "place in the task frame", "Timing", "Load of the bus"):
         failures.check(wanted in labels, f"{name}: no curve '{wanted}'")
+    browser.evaluate("document.activeElement.blur()")  # a list takes the keys for itself
     press(browser, "Home")
     failures.check(at() == 0.0, f"{name}: Home leads to {at()} s")
     press(browser, "ArrowRight")

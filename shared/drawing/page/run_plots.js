@@ -24,13 +24,15 @@ class Plot {
   constructor(plots, { title, unit, digits, height, series, times, scale, range, draw, note, label, bare }) {
     Object.assign(this, { plots, unit, digits, height, series, times, draw, bare });
     this.key = element("div", { class: "legend curves-key" });
-    this.canvas = element("div", { class: "plot", role: "img", "aria-label": label });
+    this.canvas = element("div", { class: "plot" });
     this.heading = element("h3", {}, title);
     this.box = element("div", { class: "plot-box" }, this.heading, this.key, this.canvas);
     if (note) this.box.append(element("p", { class: "note" }, note));
     plots.host.append(this.box);
     this.values = series.map((one) => this.keyFor(one));
     this.chart = new TenonLibraries.uPlot(this.options(scale, range), this.data(), this.canvas);
+    this.chart.ctx.canvas.setAttribute("role", "img");
+    this.chart.ctx.canvas.setAttribute("aria-label", label);
     this.listen();
   }
 

@@ -18,6 +18,7 @@
 #include "hw/arm/describe_fault.h"
 #include "shared/config/load.h"
 #include "shared/system/monotonic_clock.h"
+#include "sim/cell/faults/fault_spec.h"
 #include "tests/support/places.h"
 #include "tests/support/whole_run.h"
 
