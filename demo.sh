@@ -49,7 +49,7 @@ if [[ -z $bin ]]; then
 fi
 task_file=planner/tasks/$task.yaml cell_file=hw/cells/$cell.yaml
 mkdir -p "$output"
-rm -f "$output"/{plan.tnp,plan.html,truth.json,sim.out,run.lcmlog,run.can.log,result.json,black-box.csv}
+rm -f "$output"/{plan.tnp,plan.html,run.html,truth.json,sim.out,run.lcmlog,run.can.log,result.json,black-box.csv}
 
 echo "== Plan: $task from start $start, positions uncertain"
 "$bin/tenon-plan" "$task_file" --start "$start" --cell "$cell_file" --threads "$(nproc)" -o "$output/plan.tnp"
@@ -89,6 +89,12 @@ trap - EXIT
 echo
 echo "== What really happened (known to the simulator alone)"
 grep -v '^listening' "$output/sim.out"
-echo "Look at $output/plan.html (why the plan works); the run's telemetry and CAN log lie beside it."
+# A run that never began has left no log to look at.
+pages="$output/plan.html (why the plan works)"
+if "$bin/tenon-inspect" "$output/plan.tnp" --task "$task_file" --cell "$cell_file" --run "$output/result.json" \
+  --log "$output/run.lcmlog" --report "$output/run.html" >/dev/null 2>&1; then
+  pages+=" and $output/run.html (how the run went)"
+fi
+echo "Look at $pages; the run's telemetry and CAN log lie beside."
 if ((executed != 0)); then exit "$executed"; fi
 grep -q '"within_tolerance": true' "$output/truth.json"

@@ -305,8 +305,12 @@ RecordedRun RunLog::finish(bool breaks_off) {
     run_.compute_max_s = std::max<double>(run_.compute_max_s, cycle.compute_s);
   }
   if (is_fault(seen_.reason)) {
-    std::string text = run_.message.empty() ? named(seen_.reason, seen_.arm_fault) : run_.message;
-    add_fault(seen_.ended_s, text);
+    const std::string text =
+        run_.message.empty() ? named(seen_.reason, seen_.arm_fault) : run_.message;
+    // A step that went another way than planned has told it already.
+    const bool told = std::any_of(run_.faults.begin(), run_.faults.end(),
+                                  [&](const RecordedFault& fault) { return fault.text == text; });
+    if (!told) add_fault(seen_.ended_s, text);
   }
   std::stable_sort(
       run_.faults.begin(), run_.faults.end(),
