@@ -125,6 +125,11 @@ def use(browser, page, failures):
     browser.evaluate("document.querySelector('button.jump[data-span=\"2\"]').click()")
     failures.check(browser.evaluate(f"{ROOT}.step") == "2", f"{name}: a step's button leads elsewhere")
     failures.check(abs(at() - spans[2]["from_s"]) < 2e-3, f"{name}: a step's button leads to {at()} s")
+    press(browser, "ArrowRight")
+    held = browser.evaluate("[...document.querySelectorAll('.now p')].find(p => p.textContent.startsWith('Holds'))"
+                            ".textContent")
+    failures.check(held == "Holds " + spans[2]["signature"], f"{name}: after step 2 '{held}', in the result "
+                   f"{spans[2]['signature']}")
     browser.evaluate("[...document.querySelectorAll('.zoom button')].find(b => b.textContent === 'This step').click()")
     browser.wait_for(f"{ROOT}.zoom !== 'all'")
     low, high = json.loads(browser.evaluate(f"{ROOT}.zoom"))

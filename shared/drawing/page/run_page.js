@@ -1,5 +1,11 @@
 // A run laid over its plan: its way in the scene, what it felt over time, and what happens now.
 
+// "-x +z" of contact bits.
+function contactsOf(bits) {
+  const names = AXES.flatMap((axis) => ["+" + axis, "-" + axis]);
+  return names.filter((_, i) => (bits >> i) & 1).join(" ") || "nothing";
+}
+
 class RunPage {
   constructor(data) {
     this.data = data;
@@ -216,6 +222,7 @@ class RunPage {
     const { curves } = this.run;
     if (!curves) return lines;
     const index = momentAt(curves.times_s, time);
+    if (this.spanAt(time)) lines.push(termLine("Holds", contactsOf(curves.signatures[index])));
     const felt = [0, 1, 2].map((axis) => curves.wrench[axis][index]);
     if (felt.every((value) => value !== null)) {
       lines.push(
