@@ -212,7 +212,7 @@ void RunLog::take(const tenon::run_status_t& m) {
   }
   if (m.slipped_joint >= 0 && seen_.slipped_joint < 0) {
     seen_.slipped_joint = m.slipped_joint;
-    const auto joint = static_cast<std::size_t>(m.slipped_joint);
+    const auto joint = static_cast<std::size_t>(static_cast<std::uint8_t>(m.slipped_joint));
     const bool named = joint < run_.joints.size();
     const std::string name = named ? run_.joints[joint].name : std::to_string(joint);
     add_fault(time_s,
@@ -305,8 +305,9 @@ RecordedRun RunLog::finish(bool breaks_off) {
     run_.compute_max_s = std::max<double>(run_.compute_max_s, cycle.compute_s);
   }
   if (is_fault(seen_.reason)) {
-    const std::string text =
-        run_.message.empty() ? named(seen_.reason, seen_.arm_fault) : run_.message;
+    const std::string text = run_.message.empty()
+                                 ? named(seen_.reason, static_cast<std::uint8_t>(seen_.arm_fault))
+                                 : run_.message;
     // A step that went another way than planned has told it already.
     const bool told = std::any_of(run_.faults.begin(), run_.faults.end(),
                                   [&](const RecordedFault& fault) { return fault.text == text; });

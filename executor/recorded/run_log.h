@@ -42,13 +42,13 @@ class RunLog {
   struct Seen {
     std::optional<std::int64_t> start_ns;  ///< monotonic, of the first cycle
     std::int64_t sequence = -1;            ///< of the last cycle
-    int state = -1;
+    std::int8_t state = -1;
     EndReason reason = EndReason::kNone;
     double ended_s = 0.0;
     bool setup = false;
     bool bus_bad = false;
-    int slipped_joint = -1;
-    int arm_fault = 0;
+    std::int8_t slipped_joint = -1;
+    std::int8_t arm_fault = 0;
   };
 
   template <typename Message>

@@ -33,7 +33,7 @@ class RecordedRunTest : public testing::Test {
   /// @param wall_m where the wall stands in truth
   void run(double wall_m) {
     const auto recorder = std::make_unique<Recorder>();
-    Bench bench(plan_, {}, hand_made_cell(), Vector3::Zero(), recorder.get());
+    Bench bench(plan, {}, hand_made_cell(), Vector3::Zero(), recorder.get());
     bench.arm.walls.push_back({0, +1, wall_m});
     std::vector<std::string> warnings;
     Telemetry telemetry(open_telemetry("none", log_file(), warnings), hand_made_cell(),
@@ -42,41 +42,41 @@ class RecordedRunTest : public testing::Test {
     recorder->add(telemetry);
     bench.run([&] { recorder->drain(); });
     recorder->drain();
-    result_ = gather_result(bench.controller, bench.runner, 0, "");
-    telemetry.publish_summary(result_, bench.controller.record());
+    ran = gather_result(bench.controller, bench.runner, 0, "");
+    telemetry.publish_summary(ran, bench.controller.record());
     (void)telemetry.close_log();
-    log_ = folder_.get("run.lcmlog");
-    json_ = to_json(result_, hand_made_cell());
+    log_bytes = folder.get("run.lcmlog");
+    result_json = to_json(ran, hand_made_cell());
   }
 
-  [[nodiscard]] std::string log_file() const { return folder_.path() / "run.lcmlog"; }
+  [[nodiscard]] std::string log_file() const { return folder.path() / "run.lcmlog"; }
   [[nodiscard]] RecordedRun read(const std::string& bytes) const {
-    folder_.put("run.lcmlog", bytes);
-    return read_run_log(log_file(), plan_);
+    folder.put("run.lcmlog", bytes);
+    return read_run_log(log_file(), plan);
   }
   [[nodiscard]] std::string result_with(const char* key, const nlohmann::json& value) const {
-    nlohmann::json json = nlohmann::json::parse(json_);
+    nlohmann::json json = nlohmann::json::parse(result_json);
     json[nlohmann::json::json_pointer(key)] = value;
     return json.dump();
   }
   [[nodiscard]] std::string result_refusal(const std::string& text) const {
-    return refusal([&] { (void)read_run_result("result.json", text, plan_); });
+    return refusal([&] { (void)read_run_result("result.json", text, plan); });
   }
 
-  Plan plan_ = touch_and_slide_plan();
-  tests::ScratchFolder folder_;
-  RunResult result_;
-  std::string log_;
-  std::string json_;
+  Plan plan = touch_and_slide_plan();
+  tests::ScratchFolder folder;
+  RunResult ran;
+  std::string log_bytes;
+  std::string result_json;
 };
 
 TEST_F(RecordedRunTest, TheLogTellsAllCyclesStepsStatesAndTheEnd) {
-  const RecordedRun run = read(log_);
+  const RecordedRun run = read(log_bytes);
   EXPECT_TRUE(run.ended);
   EXPECT_TRUE(run.done);
-  EXPECT_EQ(run.message, result_.message);
-  EXPECT_EQ(run.samples.size(), result_.statistics.cycles);
-  EXPECT_NEAR(run.duration_s, result_.duration_s, 0.0021);
+  EXPECT_EQ(run.message, ran.message);
+  EXPECT_EQ(run.samples.size(), ran.statistics.cycles);
+  EXPECT_NEAR(run.duration_s, ran.duration_s, 0.0021);
   ASSERT_EQ(run.steps.size(), 2U);
   EXPECT_EQ(run.steps[0].outcome, Outcome::kContact);
   EXPECT_EQ(run.steps[0].signature, "-x");
@@ -92,33 +92,33 @@ TEST_F(RecordedRunTest, TheLogTellsAllCyclesStepsStatesAndTheEnd) {
   for (const RecordedCycle& cycle : run.samples) {
     if (cycle.step == 0) peak_N = std::max<double>(peak_N, std::abs(cycle.wrench[0]));
   }
-  EXPECT_NEAR(peak_N, result_.steps[0].result.peak_force_N, 1e-3);
+  EXPECT_NEAR(peak_N, ran.steps[0].result.peak_force_N, 1e-3);
 }
 
 TEST_F(RecordedRunTest, TheResultTellsTheSameSteps) {
-  const RecordedRun result = read_run_result("result.json", json_, plan_);
-  const RecordedRun log = read(log_);
+  const RecordedRun result = read_run_result("result.json", result_json, plan);
+  const RecordedRun log = read(log_bytes);
   ASSERT_EQ(result.steps.size(), 2U);
   EXPECT_EQ(result.steps[0].outcome, Outcome::kContact);
   EXPECT_EQ(result.cycles, log.cycles);
   EXPECT_TRUE(result.done);
   const RecordedRun both = joined(log, result, "run.lcmlog", "result.json");
   EXPECT_EQ(both.samples.size(), log.samples.size());
-  EXPECT_EQ(both.peak_force_N, result_.peak_force_N);
+  EXPECT_EQ(both.peak_force_N, ran.peak_force_N);
 }
 
 TEST_F(RecordedRunTest, ALogOfAnotherPlanIsRefused) {
-  const auto said = [&] { return refusal([&] { (void)read(log_); }); };
-  plan_.start_name = "elsewhere";
+  const auto said = [&] { return refusal([&] { (void)read(log_bytes); }); };
+  plan.start_name = "elsewhere";
   EXPECT_THAT(said(), HasSubstr("from start 'elsewhere'; give the plan that was executed"));
-  plan_ = touch_and_slide_plan();
-  plan_.steps[0].displacement[0] += 0.001;
+  plan = touch_and_slide_plan();
+  plan.steps[0].displacement[0] += 0.001;
   EXPECT_THAT(said(), HasSubstr("of another plan of 'hand-made': step 0 goes another way"));
-  plan_ = touch_and_slide_plan();
-  plan_.parameter_sets[0].thresholds.force_on_N += 1.0;
+  plan = touch_and_slide_plan();
+  plan.parameter_sets[0].thresholds.force_on_N += 1.0;
   EXPECT_THAT(said(), HasSubstr("step 0 has a contact from 6 N, the plan's from 7 N"));
-  plan_ = touch_and_slide_plan();
-  plan_.steps.push_back(plan_.steps.back());
+  plan = touch_and_slide_plan();
+  plan.steps.push_back(plan.steps.back());
   EXPECT_THAT(said(), HasSubstr("2 steps, the plan has 3"));
 }
 
@@ -127,7 +127,7 @@ TEST_F(RecordedRunTest, ALogThatEndsEarlyIsReadAsFarAsItGoes) {
   std::size_t before = 0;
   std::size_t refused = 0;
   const auto cut = [&](std::size_t size) {
-    const std::string bytes = log_.substr(0, size);
+    const std::string bytes = log_bytes.substr(0, size);
     std::size_t cycles = 0;
     const std::string said = refusal([&] {
       const RecordedRun run = read(bytes);
@@ -148,27 +148,27 @@ TEST_F(RecordedRunTest, ALogThatEndsEarlyIsReadAsFarAsItGoes) {
   for (std::size_t size = 0; size < kFirst; ++size) cut(size);
   EXPECT_GT(refused, 100U);
   EXPECT_GT(before, 1U);
-  for (std::size_t size = kFirst; size + 400 < log_.size(); size += 29'989) cut(size);
-  EXPECT_GT(before, result_.statistics.cycles / 2);
+  for (std::size_t size = kFirst; size + 400 < log_bytes.size(); size += 29'989) cut(size);
+  EXPECT_GT(before, ran.statistics.cycles / 2);
 }
 
 TEST_F(RecordedRunTest, ADamagedLogIsRefusedWithThePlace) {
   const std::string sync = "\xED\xA1\xDA\x01";
-  const std::size_t at = log_.find(sync, log_.size() / 2);
-  std::string bytes = log_;
+  const std::size_t at = log_bytes.find(sync, log_bytes.size() / 2);
+  std::string bytes = log_bytes;
   bytes[at] = 'x';
   EXPECT_THAT(refusal([&] { (void)read(bytes); }),
               HasSubstr("byte " + std::to_string(at) + ": no event of an LCM log begins here"));
   EXPECT_THAT(refusal([&] { (void)read("time,force\n0,1\n"); }), HasSubstr("is no LCM log"));
-  EXPECT_THAT(refusal([&] { (void)read_run_log(folder_.path() / "none", plan_); }),
+  EXPECT_THAT(refusal([&] { (void)read_run_log(folder.path() / "none", plan); }),
               HasSubstr("cannot be read: No such file"));
-  EXPECT_THAT(refusal([&] { (void)read_run_log(folder_.path(), plan_); }),
+  EXPECT_THAT(refusal([&] { (void)read_run_log(folder.path(), plan); }),
               HasSubstr("not a regular file"));
 }
 
 // Any byte of the messages may be another one.
 TEST_F(RecordedRunTest, WhateverTheMessagesSayNothingWorseThanARefusalComesOfIt) {
-  const std::string head = log_.substr(0, 2500);
+  const std::string head = log_bytes.substr(0, 2500);
   for (std::size_t i = 4; i < head.size(); ++i) {
     std::string bytes = head;
     bytes[i] = static_cast<char>(bytes[i] ^ (1 << (i % 8)));
@@ -177,10 +177,10 @@ TEST_F(RecordedRunTest, WhateverTheMessagesSayNothingWorseThanARefusalComesOfIt)
 }
 
 TEST_F(RecordedRunTest, OfSeveralRunsTheLastIsRead) {
-  const std::string first = log_;
+  const std::string first = log_bytes;
   run(0.128);
-  const RecordedRun run = read(first + log_);
-  EXPECT_EQ(run.samples.size(), result_.statistics.cycles);
+  const RecordedRun run = read(first + log_bytes);
+  EXPECT_EQ(run.samples.size(), ran.statistics.cycles);
   ASSERT_EQ(run.steps.size(), 2U);
   EXPECT_NEAR(run.steps[0].travelled[0], 0.028, 5e-4);
   ASSERT_EQ(run.notes.size(), 1U);
@@ -188,17 +188,17 @@ TEST_F(RecordedRunTest, OfSeveralRunsTheLastIsRead) {
 }
 
 TEST_F(RecordedRunTest, AResultOfAnotherRunThanTheLogIsRefused) {
-  const std::string other = json_;
+  const std::string other = result_json;
   run(0.128);
   EXPECT_THAT(refusal([&] {
-                (void)joined(read(log_), read_run_result("result.json", other, plan_), "run.lcmlog",
-                             "result.json");
+                (void)joined(read(log_bytes), read_run_result("result.json", other, plan),
+                             "run.lcmlog", "result.json");
               }),
               HasSubstr("result.json: is of another run than run.lcmlog: its step 0"));
 }
 
 TEST_F(RecordedRunTest, AResultThatIsNoneOrOfAnotherPlanIsRefusedByKey) {
-  EXPECT_EQ(result_refusal(json_), "accepted");
+  EXPECT_EQ(result_refusal(result_json), "accepted");
   EXPECT_THAT(result_refusal("{\"task\": "), HasSubstr("is no whole JSON"));
   EXPECT_THAT(result_refusal("[]"), HasSubstr("must be an object"));
   EXPECT_THAT(result_refusal("{}"), HasSubstr("is missing; give the file that tenon-exec wrote"));
