@@ -257,8 +257,8 @@ class Forces : public executor::CycleSink {
 struct Pressing {
   Outcome outcome = Outcome::kReached;
   double early_N = 0.0;  ///< largest less smallest force, from 0.2 s after the touch to 0.7 s
-  double late_N = 0.0;   ///< in the last half second
-  int turns = 0;         ///< crossings of the mean in the last half second
+  double late_N = 0.0;   ///< from 1.2 s after it to 1.7 s
+  int turns = 0;         ///< crossings of the mean in that time
 };
 
 // Pushes against the wall with the force limit and looks for no contact: it ends blocked as soon as
@@ -281,12 +281,14 @@ Pressing press(const Cell& cell, const Compliance& compliance) {
     const auto [least, most] = std::minmax_element(begin, end);
     return *most - *least;
   };
-  if (static_cast<std::ptrdiff_t>(f.size()) < samples(0.7)) return pressing;
+  if (static_cast<std::ptrdiff_t>(f.size()) < samples(1.7)) return pressing;
   pressing.early_N = swing(f.begin() + samples(0.2), f.begin() + samples(0.7));
-  const auto late = f.end() - samples(0.5);
-  pressing.late_N = swing(late, f.end());
-  const double mean_N = std::accumulate(late, f.end(), 0.0) / static_cast<double>(f.end() - late);
-  for (auto at = late; at + 1 != f.end(); ++at) {
+  // Before the move has timed out: then the setpoint lets go of the wall.
+  const auto late = f.begin() + samples(1.2);
+  const auto end = f.begin() + samples(1.7);
+  pressing.late_N = swing(late, end);
+  const double mean_N = std::accumulate(late, end, 0.0) / static_cast<double>(end - late);
+  for (auto at = late; at + 1 != end; ++at) {
     pressing.turns += (*at > mean_N) != (*(at + 1) > mean_N);
   }
   return pressing;
