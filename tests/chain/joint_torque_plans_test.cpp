@@ -74,7 +74,7 @@ TEST(JointTorquePlans, TheBusCarriesNoForceFrames) {
 
 // From a cell without a sensor to a plan that is executed, by what a user types; only the
 // identification is made in virtual time.
-class BoxByTorque : public ::testing::Test {
+class BoxByTorque : public ::testing::TestWithParam<int> {
  protected:
   Ended plan_at(double share) {
     const auto friction = identified(torque_cell("gantry3"), rough_world(share, share, kArm));
@@ -92,14 +92,14 @@ class BoxByTorque : public ::testing::Test {
     std::filesystem::remove(folder.path() / "evaluated.jsonl");
     const Ended ended =
         run(folder, {executable("tenon-evaluate"), "--cell", cell, "--task", task, "--plan",
-                     folder.path() / "box.tnp", "-n", std::to_string(kRuns), "--seed", "1",
+                     folder.path() / "box.tnp", "-n", std::to_string(runs), "--seed", "1",
                      "--experiment", experiment, "--json", json});
     EXPECT_EQ(ended.status, 0) << ended.err;
     return nlohmann::json::parse(folder.get("evaluated.json"));
   }
 
   static constexpr std::uint64_t kArm = 7;
-  static constexpr int kRuns = 50;
+  const int runs = GetParam();
   const ScratchFolder folder;
   const std::string task = in_tree("planner/tasks/box_on_table_2d.yaml");
   std::string cell;
@@ -107,8 +107,8 @@ class BoxByTorque : public ::testing::Test {
 };
 
 // The rougher drives are, the more of the runs stop by name; none is wrong.
-TEST_F(BoxByTorque, IsPlannedSlowerAndDone) {
-  const std::pair<double, int> cases[] = {{0.02, kRuns - 1}, {0.10, kRuns * 4 / 5}};
+TEST_P(BoxByTorque, IsPlannedSlowerAndDone) {
+  const std::pair<double, int> cases[] = {{0.02, runs - 1}, {0.10, runs * 3 / 4}};
   for (const auto& [share, at_least] : cases) {
     const Ended planned = plan_at(share);
     ASSERT_EQ(planned.status, 0) << planned.err;
@@ -120,6 +120,11 @@ TEST_F(BoxByTorque, IsPlannedSlowerAndDone) {
     EXPECT_EQ(summary.at("done_but_wrong").get<int>(), 0);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Tree, BoxByTorque, ::testing::Values(8),
+                         ::testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Full, BoxByTorque, ::testing::Values(50),
+                         ::testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace tenon::tests

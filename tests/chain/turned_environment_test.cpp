@@ -43,8 +43,11 @@ TEST_F(TurnedEnvironment, TheArmTakesThePlan) {
   }
 }
 
-TEST_F(TurnedEnvironment, TheBoxEndsAtItsPlaceAndAsTheTrayLies) {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+class TurnedTray : public TurnedEnvironment, public ::testing::WithParamInterface<int> {};
+
+TEST_P(TurnedTray, TheBoxEndsAtItsPlaceAndAsItLies) {
+  for (int i = 0; i < 2; ++i) {
+    const auto seed = static_cast<std::uint64_t>(GetParam() + i);
     const Vector6 offset = sim::draw_offset(task, task.starts.front(), seed);
     const WholeRun::Result result = run(offset);
     std::printf(
@@ -56,6 +59,11 @@ TEST_F(TurnedEnvironment, TheBoxEndsAtItsPlaceAndAsTheTrayLies) {
     EXPECT_LT(result.truth.error_norm_rad, 0.2 * kDegree_rad);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Tree, TurnedTray, ::testing::Values(1),
+                         ::testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Full, TurnedTray, ::testing::Values(3, 5),
+                         ::testing::PrintToStringParamName());
 
 // Five degrees either way at once with the tray's worst place.
 TEST_F(TurnedEnvironment, AtTheRimOfItsReachToo) {
