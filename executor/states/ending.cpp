@@ -76,9 +76,9 @@ std::string tare_unsteady(const Ending& e) {
 
 std::string tare_offset(const Ending& e) {
   return format(
-      "something pushes while taring: without the payload the sensor's %s reads %.4g %s, the "
-      "cell's "
-      "sensor_bias is %.4g, must be within %.3g: free the part, or calibrate again",
+      "something pushes while taring, or the sensor's calibration or unit is another: without the "
+      "payload its %s reads %.4g %s, the cell's sensor_bias is %.4g, must be within %.3g: free the "
+      "part, or calibrate again",
       axis_name(e.index), e.value, wrench_unit(e.index), e.wanted, e.bound);
 }
 

@@ -94,11 +94,23 @@ std::string ati_status(std::uint32_t status) {
          "); check its supply and cable, and switch it off and on";
 }
 
-std::string ati_configuration(const ArmFault& fault) {
+std::string ati_reach(const ArmFault& fault, const ForceTorqueSensor& sensor) {
+  const std::uint32_t row = fault.object >> 8U;
+  const bool force = row < 3;
+  return format(
+      "by its calibration and units %s reads no more than %u %s with all gauges at their ends, its "
+      "range is said to be %g: this is another sensor, calibration or unit, or correct %s",
+      row < 6 ? kAxes[row] : "?", fault.code, force ? "N" : "Nm",
+      force ? sensor.force_range_N : sensor.torque_range_Nm,
+      force ? "force_range_N" : "torque_range_Nm");
+}
+
+std::string ati_configuration(const ArmFault& fault, const ForceTorqueSensor& sensor) {
   const std::uint32_t place = fault.object >> 8U;
   const char* what = place == 0 ? "force" : "torque";
   switch (fault.object & 0xFFU) {
     case ati::kReadMatrixRow:
+      if (fault.code != 0) return ati_reach(fault, sensor);
       return format(
           "row %u (%s) of its calibration matrix is zero or no numbers; it is not "
           "calibrated, or another calibration must be chosen in it",
@@ -136,7 +148,7 @@ std::optional<std::string> describe_sensor(const ArmFault& fault, const ForceTor
     return name + (ati ? ati_no_answer(fault, sensor) : rft_no_answer(fault, sensor));
   }
   if (fault.kind == ArmFaultKind::kConfiguration) {
-    return name + (ati ? ati_configuration(fault) : rft_refusal(fault, sensor));
+    return name + (ati ? ati_configuration(fault, sensor) : rft_refusal(fault, sensor));
   }
   const bool its_word = fault.object >> 8 == tenon::canopen::kSensorStatus;
   if (fault.kind == ArmFaultKind::kSensorInvalid && its_word) {

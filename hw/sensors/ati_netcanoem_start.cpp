@@ -105,8 +105,21 @@ SensorStart::Heard AtiNetcanoemStart::hear_units(const CanFrame& frame, ArmFault
     }
     scaled.middleRows<3>(static_cast<Eigen::Index>(3 * i)) *= units[i][code] / counts_[i];
   }
+  if (!spans_ranges(scaled, fault)) return Heard::kWrong;
   source_.calibrate(scaled);
   return Heard::kAnswer;
+}
+
+bool AtiNetcanoemStart::spans_ranges(const Matrix& calibration, ArmFault& fault) const {
+  constexpr double kGaugeMax = 32767.0;
+  for (Eigen::Index row = 0; row < 6; ++row) {
+    const double reach = kGaugeMax * calibration.row(row).lpNorm<1>();
+    if (reach >= ranges_[row < 3 ? 0 : 1]) continue;
+    fault.object = object_of(ati::kReadMatrixRow, static_cast<std::uint32_t>(row));
+    fault.code = static_cast<std::uint32_t>(std::ceil(reach));
+    return false;
+  }
+  return true;
 }
 
 }  // namespace tenon::hw

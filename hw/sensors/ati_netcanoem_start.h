@@ -1,8 +1,9 @@
 #pragma once
 // The start of an ATI NETCANOEM board: its calibration matrix is read row by row, then counts a
 // unit and units, then a whole sample, whose status must be good. What the board says of itself is
-// judged: a matrix that is none, counts of 0 and units that nobody knows are refused. Its bias and
-// its choice of a calibration are left alone.
+// judged: a matrix that is none, counts of 0, units that nobody knows, and a calibration that does
+// not come to the sensor's range are refused. Its bias and its choice of a calibration are left
+// alone.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +18,10 @@ class AtiNetcanoemStart final : public SensorStart {
  public:
   /// @param source is calibrated in the end; must outlive it
   AtiNetcanoemStart(const ForceTorqueSensor& sensor, AtiNetcanoemSource& source)
-      : SensorStart(sensor.bus()), request_id_(sensor.request_id), source_(source) {}
+      : SensorStart(sensor.bus()),
+        request_id_(sensor.request_id),
+        ranges_{sensor.force_range_N, sensor.torque_range_Nm},
+        source_(source) {}
 
  private:
   using Matrix = AtiNetcanoemSource::Matrix;
@@ -34,8 +38,12 @@ class AtiNetcanoemStart final : public SensorStart {
   [[nodiscard]] Heard hear_row(std::size_t row, std::uint32_t part, const CanFrame& frame);
   [[nodiscard]] Heard hear_counts(const CanFrame& frame, ArmFault& fault);
   [[nodiscard]] Heard hear_units(const CanFrame& frame, ArmFault& fault);
+  /// With all gauges at their ends every axis must come to its range: what reads less than the
+  /// sensor's file says is another sensor's, or in another unit. @param calibration N, Nm a count
+  [[nodiscard]] bool spans_ranges(const Matrix& calibration, ArmFault& fault) const;
 
   const std::uint32_t request_id_;
+  const std::array<double, 2> ranges_;  ///< N, Nm
   AtiNetcanoemSource& source_;
   Matrix matrix_ = Matrix::Zero();  ///< as the board has it
   unsigned parts_ = 0;              ///< of the present answer that have come, a bit each

@@ -10,6 +10,7 @@
 
 #include "executor/dry_run/plan_check.h"
 #include "shared/config/load.h"
+#include "sim/cell/faults/fault_spec.h"
 #include "tests/support/places.h"
 #include "tests/support/planned.h"
 #include "tests/support/sensor_faults.h"
@@ -87,6 +88,40 @@ TEST_P(ContactSensors, EachFaultOfItEndsByItsNameInItsTime) {
 
 INSTANTIATE_TEST_SUITE_P(Tree, ContactSensors, testing::Values(kSlow, kRft, kNetcanoem),
                          [](const auto& each) { return each.param.cell; });
+
+// What no frame tells: the payload's weight does, where the cell knows what the sensor reads of
+// itself, and before anything has moved.
+class MiscalibratedSensors : public testing::TestWithParam<const char*> {};
+
+TEST_P(MiscalibratedSensors, AnotherUnitOrMatrixIsNamedByTheTare) {
+  const std::string folder = GetParam() == std::string("gantry3")
+                                 ? "hw/cells/gantry3.yaml"
+                                 : "tests/plans/" + std::string(GetParam()) + "/cell.yaml";
+  Cell cell = load_cell(in_tree(folder));
+  cell.sensor_bias = SensorBias{.force_tolerance_N = 1.5, .torque_tolerance_Nm = 0.5};
+  const auto [task, plan] = planned_box(cell, "1");
+  for (const char* fault :
+       {"", "wrong-units:factor=4.448", "wrong-units:factor=0.2248", "wrong-matrix"}) {
+    SCOPED_TRACE(fault);
+    WholeRun::Options options;
+    options.start = "1";
+    if (*fault != '\0') options.faults = {sim::parse_fault(fault)};
+    WholeRun run(cell, task, plan, options);
+    const auto result = run.run();
+    if (*fault == '\0') {
+      EXPECT_EQ(result.ending.reason, executor::EndReason::kPlanDone) << result.reason;
+      continue;
+    }
+    EXPECT_EQ(result.steps, 0U) << result.reason;
+    EXPECT_EQ(result.ending.reason, executor::EndReason::kTareOffset) << result.reason;
+    for (const auto& drive : result.truth.drives) EXPECT_TRUE(drive.brake_engaged) << drive.joint;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tree, MiscalibratedSensors,
+                         testing::Values("gantry3", "slow_sensor_gantry3", "rft_gantry3",
+                                         "ati_gantry3"),
+                         [](const auto& each) { return std::string(each.param); });
 
 TEST(ContactWithASlowSensor, ThePlanIsSlowerByTheSensorsPeriod) {
   const Cell cell = load_cell(in_tree("tests/plans/slow_sensor_gantry3/cell.yaml"));

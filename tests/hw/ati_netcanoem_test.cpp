@@ -33,6 +33,13 @@ ForceTorqueSensor ati_sensor() {
           .cycles_per_sample = 2};
 }
 
+ForceTorqueSensor small_sensor() {
+  ForceTorqueSensor sensor = ati_sensor();
+  sensor.force_range_N = 1.0;
+  sensor.torque_range_Nm = 0.1;
+  return sensor;
+}
+
 Robot robot_with_ati() {
   Robot robot = gantry_robot();
   robot.sensor = ati_sensor();
@@ -154,6 +161,9 @@ TEST_F(AtiNetcanoem, WhatHasAnotherLengthOrIdentifierIsNoHalf) {
 /// The start on a bus whose other end the test is.
 class AtiNetcanoemStarts : public testing::Test {
  protected:
+  explicit AtiNetcanoemStarts(const ForceTorqueSensor& sensor = ati_sensor())
+      : start(sensor, source) {}
+
   /// What the board is sent until then.
   std::vector<CanFrame> sent(int until_ms) {
     std::vector<CanFrame> frames;
@@ -202,7 +212,7 @@ class AtiNetcanoemStarts : public testing::Test {
   CanBus& master = bus.attach();
   CanBus& board = bus.attach();
   AtiNetcanoemSource source{ati_sensor()};
-  AtiNetcanoemStart start{ati_sensor(), source};
+  AtiNetcanoemStart start;
   int now_ms = 0;
 };
 
@@ -223,7 +233,30 @@ TEST_F(AtiNetcanoemStarts, ReadsMatrixCountsUnitsAndAFirstSample) {
   EXPECT_TRUE(sent(1000).empty());
 }
 
-TEST_F(AtiNetcanoemStarts, UnitsBecomeNewtonsAndNewtonMetres) {
+TEST_F(AtiNetcanoemStarts, ACalibrationThatDoesNotComeToTheRangeIsRefusedByItsAxis) {
+  rows();
+  // 21 counts a gauge, 32767 gauges, 100'000 counts a newton: 6.9 N, where 290 are said.
+  counts({0, 0x01, 0x86, 0xA0, 0, 0, 0x03, 0xE8});
+  units();
+  EXPECT_EQ(start.fault().kind, ArmFaultKind::kConfiguration);
+  EXPECT_EQ(said(),
+            "force/torque sensor ati_netcanoem: by its calibration and units fx reads no more than "
+            "7 N with all gauges at their ends, its range is said to be 290: this is another "
+            "sensor, calibration or unit, or correct force_range_N");
+  start.restart();
+  rows();
+  counts();
+  units(2, 4);  // N mm
+  EXPECT_NE(said().find("tx reads no more than 1 Nm"), std::string::npos) << said();
+}
+
+/// Of a sensor whose range is within reach in any unit.
+class AtiNetcanoemUnits : public AtiNetcanoemStarts {
+ protected:
+  AtiNetcanoemUnits() : AtiNetcanoemStarts(small_sensor()) {}
+};
+
+TEST_F(AtiNetcanoemUnits, BecomeNewtonsAndNewtonMetres) {
   // Of one unit in the maker's list, by definition: lbf, N, klbf, kN, kgf, gf.
   const std::array forces_N = {4.4482216, 1.0, 4448.2216, 1000.0, 9.80665, 9.80665e-3};
   // lbf in, lbf ft, N m, N mm, kgf cm, kN m.

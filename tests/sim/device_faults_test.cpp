@@ -264,6 +264,22 @@ TEST(DeviceFaultsTest, AForgedForceIsAddedAlongXAndADriftGrows) {
   EXPECT_EQ(bench.signed_value({0x6401, 1}), -200);
 }
 
+TEST(DeviceFaultsTest, WrongUnitsAndAWrongMatrixChangeTheWholeReading) {
+  SensorBench bench;
+  bench.start();
+  bench.wrench << 1.0, 2.0, 3.0, 0.1, 0.2, 0.3;
+  bench.sensor.inject({.kind = FaultKind::kWrongMatrix});
+  bench.pass(1);
+  bench.sync();
+  EXPECT_EQ(bench.signed_value({0x6401, 1}), 200);
+  EXPECT_EQ(bench.signed_value({0x6401, 3}), 100);
+  EXPECT_EQ(bench.signed_value({0x6401, 4}), 200);
+  bench.sensor.inject({.kind = FaultKind::kWrongUnits, .value = 10.0});
+  bench.pass(1);
+  bench.sync();
+  EXPECT_EQ(bench.signed_value({0x6401, 1}), 2000);
+}
+
 TEST(DeviceFaultsTest, ATornWrenchHasHalvesOfDifferentSamples) {
   SensorBench bench;
   bench.start();

@@ -65,8 +65,7 @@ void WrenchSampler::sample_axis(int axis, bool saturated) {
   const double range = force ? sensor_.force_range_N : sensor_.torque_range_Nm;
   const double sigma = force ? sensor_.force_noise_N : sensor_.torque_noise_Nm;
   const double per_count = force ? sensor_.force_per_count_N : sensor_.torque_per_count_Nm;
-  const double value = filtered_[axis] + bias_[axis] - tare_[axis] + sigma * noise_.normal() +
-                       (axis == 0 ? forged_N() : 0.0);
+  const double value = reading(axis) + sigma * noise_.normal() + (axis == 0 ? forged_N() : 0.0);
   if (saturated || !(std::abs(value) < range)) {
     sample_.saturated = static_cast<std::uint8_t>(sample_.saturated | 1U << axis);
   }
@@ -74,6 +73,15 @@ void WrenchSampler::sample_axis(int axis, bool saturated) {
   sample_.wrench[axis] = limited;
   sample_.counts[static_cast<std::size_t>(axis)] = static_cast<std::int16_t>(
       std::llround(std::clamp(limited / per_count, -kCountMax, kCountMax)));
+}
+
+double WrenchSampler::reading(int axis) const {
+  const bool mixed = faults_.find(FaultKind::kWrongMatrix) != nullptr;
+  const int group = 3 * (axis / 3);
+  const int from = mixed ? group + (axis + 1) % 3 : axis;
+  const Fault* units = faults_.find(FaultKind::kWrongUnits);
+  const double factor = units == nullptr ? 1.0 : units->value;
+  return factor * (filtered_[from] + bias_[from] - tare_[from]);
 }
 
 double WrenchSampler::forged_N() const {

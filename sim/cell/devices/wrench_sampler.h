@@ -45,7 +45,7 @@ class WrenchSampler {
   void tare(bool on);
 
   /// Stale, torn, saturated and frozen force strike each sample by their probability; drifting and
-  /// forged force last.
+  /// forged force, wrong units and a wrong matrix last.
   void inject(const Fault& fault);
   /// Draws: what is not the wrench's own is its face's to carry out.
   [[nodiscard]] bool strikes(FaultKind kind) { return faults_.strikes(kind); }
@@ -54,6 +54,8 @@ class WrenchSampler {
  private:
   void drift(std::int64_t step_ns);
   void sample_axis(int axis, bool saturated);
+  /// Before noise: filter, bias and tare, and what a wrong calibration makes of them.
+  [[nodiscard]] double reading(int axis) const;
   /// What faults add along x.
   [[nodiscard]] double forged_N() const;
 

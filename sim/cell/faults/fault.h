@@ -37,6 +37,8 @@ enum class FaultKind : std::uint8_t {
   kFrozenForce = 20,    ///< the wrench stays as it was, the counter runs on
   kDriftingForce = 21,  ///< the force along x moves away by `value` newtons a second
   kForgedForce = 22,    ///< the force along x reads `value` newtons more
+  kWrongUnits = 23,     ///< it reads `value` times what it feels, as if in another unit
+  kWrongMatrix = 24,    ///< x reads y, y reads z, z reads x, as by another sensor's calibration
 };
 
 /// Who carries it out.
@@ -75,6 +77,8 @@ enum class FaultTarget : std::uint8_t {
     case FaultKind::kFrozenForce:
     case FaultKind::kDriftingForce:
     case FaultKind::kForgedForce:
+    case FaultKind::kWrongUnits:
+    case FaultKind::kWrongMatrix:
       return FaultTarget::kSensor;
   }
   return FaultTarget::kBus;

@@ -25,7 +25,7 @@ struct Kind {
   const char* example = "";
 };
 
-constexpr std::array<Kind, 23> kKinds{{
+constexpr std::array<Kind, 25> kKinds{{
     {FaultKind::kDrop, "drop", false, nullptr, 0, 0, "a frame is lost for all receivers",
      "drop:node=3,time_s=2,duration_s=0.5,probability=0.1,seed=7"},
     {FaultKind::kDelay, "delay", false, "delay_s", 1e-6, 10.0, "a frame arrives delay_s late",
@@ -83,6 +83,12 @@ constexpr std::array<Kind, 23> kKinds{{
     {FaultKind::kForgedForce, "forged-force", false, "force_N", -1000.0, 1000.0,
      "the sensor's force along x reads that much more",
      "forged-force:at=free,time_s=0.1,force_N=80,duration_s=0.01"},
+    {FaultKind::kWrongUnits, "wrong-units", false, "factor", 1e-3, 1000.0,
+     "the sensor reads factor times what it feels, as if in another unit",
+     "wrong-units:factor=4.448"},
+    {FaultKind::kWrongMatrix, "wrong-matrix", false, nullptr, 0, 0,
+     "the sensor's x reads y, y reads z and z reads x, as by another sensor's calibration",
+     "wrong-matrix:time_s=0"},
 }};
 
 constexpr std::array<std::string_view, kFaultPhases> kPhaseNames = {"enabling", "free", "sliding",
