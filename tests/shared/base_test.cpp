@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shared/base/bytes.h"
+#include "shared/base/crc32.h"
 #include "shared/base/crc32c.h"
 #include "shared/base/shown.h"
 #include "shared/base/spsc_ring.h"
@@ -69,6 +70,14 @@ TEST(Crc32c, TableAgreesWithTheBitwiseDefinition) {
     EXPECT_EQ(crc32c(bytes), bitwise_crc32c(bytes)) << i << " bytes";
     bytes.push_back(static_cast<std::uint8_t>(i * 167 + 13));
   }
+}
+
+TEST(Crc32, HasTheCheckValueAndTakesItsBytesInPieces) {
+  Crc32 crc;
+  EXPECT_EQ(crc.value(), 0U);
+  crc.add(bytes_of("1234"));
+  crc.add(bytes_of("56789"));
+  EXPECT_EQ(crc.value(), 0xCBF43926U);
 }
 
 TEST(Bytes, LittleEndianWhateverTheType) {
