@@ -15,7 +15,7 @@ build_packages=(
 )
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev libfcl-dev
-  clang-format clang-tidy cppcheck git python3 python3-can python3-serial iproute2
+  clang-format clang-tidy cppcheck git python3 python3-can python3-numpy python3-serial iproute2
   python3-jsonschema python3-yaml python3-pyte util-linux can-utils qemu-system-x86 busybox-static cpio chromium rt-tests
 )
 full_packages=(mmdebstrap lintian)

@@ -1,7 +1,8 @@
-# What `cmake --install` puts where, and the Debian packages of it. Two components:
+# What `cmake --install` puts where, and the Debian packages of it. Three components:
 #
 #   runtime   programs, manual pages, completion, task, robot and cell files     package tenon
 #   dev       headers, static libraries, find_package(tenon)                     package libtenon-dev
+#   python    the Python package                                                 package python3-tenon
 #
 # Files lie below share/tenon as they lie in the repository, so that commands read the same in both.
 include(GNUInstallDirs)
@@ -62,8 +63,12 @@ install(FILES .cmake/package/tenon-config.cmake .cmake/FindLCM.cmake .cmake/Find
               ${PROJECT_BINARY_DIR}/package/tenon-config-version.cmake
         DESTINATION ${package} COMPONENT dev)
 
+# --- for Python; where Debian's looks below /usr. Elsewhere PYTHONPATH has to name it. -----------------------
+install(DIRECTORY shared/python/tenon DESTINATION lib/python3/dist-packages COMPONENT python FILES_MATCHING PATTERN "*.py")
+install(FILES shared/python/README.md DESTINATION ${data}/shared/python COMPONENT python)
+
 # --- Debian packages: cpack --config build/release/CPackConfig.cmake ---------------------------------------
-foreach(component_and_name IN ITEMS runtime:tenon dev:libtenon-dev)
+foreach(component_and_name IN ITEMS runtime:tenon dev:libtenon-dev python:python3-tenon)
   string(REPLACE ":" ";" pair ${component_and_name})
   list(GET pair 0 component)
   list(GET pair 1 name)
@@ -79,7 +84,7 @@ endforeach()
 set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/.cmake/package/maintainer.cmake)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME tenon)
-set(CPACK_COMPONENTS_ALL runtime dev)
+set(CPACK_COMPONENTS_ALL runtime dev python)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
@@ -102,4 +107,11 @@ set(CPACK_COMPONENT_DEV_DESCRIPTION "planner and executor as libraries of C++
  Headers, static libraries and find_package(tenon): planner/planner.h takes a
  task and gives a plan, executor/plan_executor.h takes a plan and feedback and
  gives setpoints.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-tenon)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.9), python3-numpy")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "read what Tenon writes into numpy
+ Plans of guarded moves, run logs, results and truths of Tenon's programs as
+ numpy arrays. Pure Python; needs neither the programs nor LCM.")
 include(CPack)

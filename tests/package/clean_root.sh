@@ -40,6 +40,11 @@ run tenon-plan --version
 # At 100 Hz: a machine that tests something else beside this is no trouble.
 run /usr/share/tenon/demo.sh --bin /usr/bin --cell lwa4p --output /tmp/demo
 run sh -c 'ls /tmp/demo'
+# For the logs of other tools.
+run tenon-monitor export /tmp/demo/run.lcmlog --csv /tmp/demo/run.csv --mcap /tmp/demo/run.mcap
+install "--yes /packages/python3-tenon_*.deb"
+sed -n '/^```python$/,/^```$/{/^```/d;p}' "$root/usr/share/tenon/shared/python/README.md" >"$root/tmp/demo/example.py"
+run sh -c 'cd /tmp/demo && python3 example.py'
 END
 chmod +x "$scratch/try.sh"
 mmdebstrap --quiet --variant=minbase \

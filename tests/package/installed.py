@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Installs a build into an empty folder: programs that run from there, a manual page and a completion that name
-every option of each, and a project that finds the libraries, plans with them and executes the plan.
+every option of each, a project that finds the libraries, plans with them and executes the plan, and the Python package.
 
   installed.py CMAKE BUILD SOURCE
 """
@@ -88,6 +88,12 @@ def check_project(cmake, prefix, source, folder, failures):
     print(run(prefix / "bin/tenon-inspect", folder / "plan.tnp").splitlines()[0])
 
 
+def check_python(prefix, folder, failures):
+    said = run("/usr/bin/python3", "-B", "-c", "import tenon; plan = tenon.read_plan('plan.tnp'); print(tenon.__file__, "
+               "plan.task_name, len(plan.steps))", cwd=folder, env={"PYTHONPATH": str(prefix / "lib/python3/dist-packages")})
+    failures.check(said.startswith(str(prefix)) and "box_on_table_2d" in said, f"the Python package says {said}")
+
+
 def main():
     cmake, build, source = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
     failures = Failures()
@@ -104,6 +110,7 @@ def main():
                       "--cell", "hw/cells/gantry3.yaml", cwd=prefix / "share/tenon")
         failures.check("nothing stands against" in checked, f"--check from the installation says {checked}")
         check_project(cmake, prefix, source, folder, failures)
+        check_python(prefix, folder, failures)
     print(f"{failures.count} failures")
     return 1 if failures.count else 0
 
