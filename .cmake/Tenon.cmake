@@ -18,7 +18,7 @@ set(TENON_LIBRARIES shared shared_canopen shared_mit shared_system shared_drawin
     planner planner_belief planner_search planner_judge planner_report planner_new_task
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry executor_monitor executor_recorded
-    hw_can hw_canopen hw_cia402 hw_sensors hw_arm hw_mit hw_robot_arm hw_load hw_check
+    executor_export hw_can hw_canopen hw_cia402 hw_sensors hw_arm hw_mit hw_robot_arm hw_load hw_check
     sim_physics sim_cell sim_listener sim_evaluation sim_evaluation_chain)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
@@ -59,6 +59,9 @@ set(TENON_MAY_USE_executor_monitor        shared shared_system executor_faults e
 # Reads what telemetry wrote, and needs no LCM for it.
 set(TENON_MAY_USE_executor_recorded       shared shared_system executor_faults executor_states executor_record
                                           lcmtypes lcmtypes_received nlohmann_json::nlohmann_json)
+set(TENON_MAY_USE_executor_export         shared shared_system executor_faults executor_states executor_record
+                                          executor_recorded lcmtypes lcmtypes_received
+                                          nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_hw_can        shared shared_system)
 set(TENON_MAY_USE_hw_canopen    shared shared_canopen)
 set(TENON_MAY_USE_hw_cia402     shared shared_canopen)
@@ -85,7 +88,7 @@ set(TENON_MAY_USE_tenon-plan     planner planner_report planner_new_task sim_phy
 set(TENON_MAY_USE_tenon-inspect  planner planner_report executor_recorded sim_physics shared_config)
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
                                  executor_loop executor_telemetry hw_can hw_robot_arm hw_load shared_config)
-set(TENON_MAY_USE_tenon-monitor  executor_monitor executor_telemetry shared_config LCM::lcm Ncurses::ncursesw)
+set(TENON_MAY_USE_tenon-monitor  executor_monitor executor_export executor_telemetry shared_config LCM::lcm Ncurses::ncursesw)
 set(TENON_MAY_USE_tenon-sim      sim_cell sim_listener hw_can shared_eds shared_config)
 set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)
 set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 hw_mit hw_check shared_eds shared_config)

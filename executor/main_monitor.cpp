@@ -1,5 +1,5 @@
-// tenon-monitor: watches a run over LCM, on a terminal as a dashboard, elsewhere as lines. It can
-// only listen. Only composes; see executor/README.md.
+// tenon-monitor: watches a run over LCM, on a terminal as a dashboard, elsewhere as lines, and
+// writes a log for other tools. It can only listen. Only composes; see executor/README.md.
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -14,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include "executor/main_monitor_export.h"
 #include "executor/main_monitor_screen.h"
 #include "executor/monitor/dashboard.h"
 #include "executor/monitor/recording.h"
@@ -178,6 +179,23 @@ int watch(const Options& options) {
   return dashboard.run(lcm);
 }
 
+// --- export ---------------------------------------------------------------------------------
+
+// The subcommand, whose options go into `options`.
+CLI::App* describe_export(CLI::App& app, ExportOptions& options) {
+  CLI::App* sub = app.add_subcommand("export", "Writes a run's log as CSV and MCAP and ends");
+  sub->footer("Example: tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap");
+  sub->add_option("log", options.log, "Log of tenon-exec --log, or of the key r")->required();
+  sub->add_option("--csv", options.csv, "File for a table: a row a control cycle");
+  sub->add_option("--mcap", options.mcap,
+                  "File for PlotJuggler and Foxglove: every message, what happened, the tool's "
+                  "frames");
+  sub->add_option("--run", options.run, "Which, of a log that holds several, from 1")
+      ->check(CLI::Range(1, 1'000'000))
+      ->default_str("the last");
+  return sub;
+}
+
 }  // namespace
 }  // namespace tenon::executor
 
@@ -185,15 +203,19 @@ int main(int argc, char** argv) {
   return tenon::run_main("tenon-monitor", [&] {
     using namespace tenon::executor;
     Options options;
+    ExportOptions export_options;
     CLI::App app{
         "Watches a run of tenon-exec over LCM: on a terminal as a dashboard, else line by line."};
-    app.footer("Examples:\n  tenon-monitor\n  tenon-monitor --lcm-url 'file://run.lcmlog?speed=1'");
+    app.footer(
+        "Examples:\n  tenon-monitor\n  tenon-monitor --lcm-url 'file://run.lcmlog?speed=1'\n  "
+        "tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap");
     app.set_version_flag("--version", TENON_VERSION);
     app.add_option("--lcm-url", options.url, "where telemetry comes from")->capture_default_str();
     app.add_option("--record-to", options.record_to, "folder of what the key r records")
         ->capture_default_str();
     app.add_flag("--lines", options.lines, "lines on a terminal too");
+    const CLI::App* exports = describe_export(app, export_options);
     tenon::parse(app, argc, argv);
-    return watch(options);
+    return exports->parsed() ? run_export(export_options) : watch(options);
   });
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lcmtypes/received/received.h"
+#include "shared/base/bytes.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/system/regular_file.h"
@@ -18,15 +19,10 @@ namespace {
 
 constexpr std::uint32_t kSync = 0xEDA1DA01;
 constexpr std::size_t kHeading_bytes = 28;
+constexpr std::size_t kTimeAt = 12;
 constexpr std::size_t kNameSizeAt = 20;
 constexpr std::size_t kDataSizeAt = 24;
 constexpr std::uint32_t kNameMax_bytes = 255;
-
-std::uint32_t u32_be(std::span<const std::uint8_t> bytes) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < sizeof value; ++i) value = value << 8U | bytes[i];
-  return value;
-}
 
 }  // namespace
 
@@ -44,7 +40,7 @@ EventFile::EventFile(std::filesystem::path file) : file_(std::move(file)) {
   std::array<char, sizeof kSync> first{};
   stream_.read(first.data(), first.size());
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(first.data());
-  if (!stream_ || u32_be({bytes, first.size()}) != kSync) {
+  if (!stream_ || load_be<std::uint32_t>({bytes, first.size()}) != kSync) {
     throw InputError(file_.string() +
                      ": is no LCM log; give the file that tenon-exec wrote with --log");
   }
@@ -61,9 +57,11 @@ EventFile::Heading EventFile::heading() {
   stream_.read(read.data(), read.size());
   const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(read.data()),
                                             read.size());
-  const Heading heading{u32_be(bytes.subspan(kNameSizeAt)), u32_be(bytes.subspan(kDataSizeAt))};
+  const Heading heading{load_be<std::int64_t>(bytes.subspan(kTimeAt)),
+                        load_be<std::uint32_t>(bytes.subspan(kNameSizeAt)),
+                        load_be<std::uint32_t>(bytes.subspan(kDataSizeAt))};
   constexpr std::uint32_t kDataMax_bytes = std::numeric_limits<std::int32_t>::max();
-  if (!stream_ || u32_be(bytes) != kSync || heading.name_size > kNameMax_bytes ||
+  if (!stream_ || load_be<std::uint32_t>(bytes) != kSync || heading.name_size > kNameMax_bytes ||
       heading.data_size > kDataMax_bytes) {
     throw InputError(
         format("%s: byte %llu: no event of an LCM log begins here; the file is damaged",
@@ -81,6 +79,7 @@ std::optional<LoggedEvent> EventFile::next() {
   breaks_off_ = !left(std::uint64_t{sizes.name_size} + sizes.data_size);
   if (breaks_off_) return std::nullopt;
   LoggedEvent event;
+  event.time_us = sizes.time_us;
   event.channel.resize(sizes.name_size);
   stream_.read(event.channel.data(), sizes.name_size);
   at_ += sizes.name_size;

@@ -13,6 +13,7 @@
 namespace tenon::executor {
 
 struct LoggedEvent {
+  std::int64_t time_us = 0;  ///< when it was logged, since 1970
   std::string channel;
   std::vector<std::uint8_t> message;  ///< empty where it is longer than any of Tenon's
 };
@@ -30,6 +31,7 @@ class EventFile {
 
  private:
   struct Heading {
+    std::int64_t time_us;
     std::uint32_t name_size;
     std::uint32_t data_size;
   };

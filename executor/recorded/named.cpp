@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "executor/faults/fault_table.h"
+#include "lcmtypes/tenon/run_setup_t.hpp"
 #include "shared/base/error.h"
+#include "shared/base/printable.h"
 
 namespace tenon::executor {
 
@@ -28,6 +30,20 @@ std::string named(EndReason reason, int arm_fault) {
   std::string text = row == nullptr ? to_string(reason) : full_name(*row);
   std::replace(text.begin(), text.end(), '_', ' ');
   return text;
+}
+
+std::vector<RecordedJoint> joints_of(const tenon::run_setup_t& m) {
+  std::vector<RecordedJoint> joints;
+  std::size_t begin = 0;
+  const int count = std::min<int>(m.joint_count, static_cast<int>(kMaxJoints));
+  for (int i = 0; i < count; ++i) {
+    const std::size_t end = std::min(m.joint_names.find('\n', begin), m.joint_names.size());
+    const auto at = static_cast<std::size_t>(i);
+    joints.push_back({printable(m.joint_names.substr(begin, end - begin)), m.joint_linear[at] != 0,
+                      m.joint_lower[at], m.joint_upper[at]});
+    begin = std::min(end + 1, m.joint_names.size());
+  }
+  return joints;
 }
 
 }  // namespace tenon::executor

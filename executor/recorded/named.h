@@ -1,11 +1,17 @@
 #pragma once
 // What the readers of logs and of results have in common: of which plan a record is, and what its
-// end is called. Pure; offline.
+// joints and its end are called. Pure; offline.
 
 #include <string>
+#include <vector>
 
 #include "executor/faults/end_reason.h"
 #include "shared/plan/plan.h"
+#include "shared/run/recorded_run.h"
+
+namespace tenon {
+class run_setup_t;
+}  // namespace tenon
 
 namespace tenon::executor {
 
@@ -19,5 +25,8 @@ void check_named(const std::string& file, const std::string& task, const std::st
 
 /// "force fault", "arm fault: heartbeat lost". @param arm_fault a number of ArmFaultKind
 [[nodiscard]] std::string named(EndReason reason, int arm_fault);
+
+/// Names may be anything that fits a line.
+[[nodiscard]] std::vector<RecordedJoint> joints_of(const tenon::run_setup_t& message);
 
 }  // namespace tenon::executor

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "executor/record/channels.h"
+#include "executor/recorded/known.h"
 #include "executor/recorded/named.h"
 #include "executor/states/ending.h"
 #include "executor/states/state_machine.h"
@@ -39,30 +40,6 @@ std::array<float, 7> floats_of(const double (&position_m)[3], const double (&wxy
   pose[5] = static_cast<float>(unit.y());
   pose[6] = static_cast<float>(unit.z());
   return pose;
-}
-
-bool knows_joints(State state) { return state != State::kWaiting; }
-
-bool knows_forces(State state) { return state != State::kWaiting && state != State::kTaring; }
-
-/// Whether the executor moves the tool by setpoints.
-bool commands(State state) {
-  return state == State::kApproaching || state == State::kRunning || state == State::kStopping ||
-         state == State::kHolding;
-}
-
-std::vector<RecordedJoint> joints_of(const tenon::run_setup_t& m) {
-  std::vector<RecordedJoint> joints;
-  std::size_t begin = 0;
-  const int count = std::min<int>(m.joint_count, static_cast<int>(kMaxJoints));
-  for (int i = 0; i < count; ++i) {
-    const std::size_t end = std::min(m.joint_names.find('\n', begin), m.joint_names.size());
-    const auto at = static_cast<std::size_t>(i);
-    joints.push_back({printable(m.joint_names.substr(begin, end - begin)), m.joint_linear[at] != 0,
-                      m.joint_lower[at], m.joint_upper[at]});
-    begin = std::min(end + 1, m.joint_names.size());
-  }
-  return joints;
 }
 
 void copy_joints(const std::vector<double>& from, std::array<float, kMaxJoints>& to) {

@@ -51,7 +51,8 @@ RESERVED = [
     ("ODE", re.compile(r"^ode/"), lambda path, main: path.startswith(("sim/", "tests/")) and not main),
     ("LCM", re.compile(r"^(lcm|lcmtypes)/"),
      lambda path, main: path.startswith("tests/") or path == "executor/main_monitor.cpp"
-     or path.startswith(("executor/telemetry/", "executor/monitor/", "executor/recorded/", "sim/listener/", "lcmtypes/"))),
+     or path.startswith(("executor/telemetry/", "executor/monitor/", "executor/recorded/", "executor/export/",
+                         "sim/listener/", "lcmtypes/"))),
     ("ncurses", re.compile(r"^n?curses"), lambda path, main: path == "executor/main_monitor_screen.cpp"),
     ("yaml-cpp", re.compile(r"^yaml-cpp/"),
      lambda path, main: path.startswith(("shared/config/", "tests/"))),
