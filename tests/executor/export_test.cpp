@@ -18,6 +18,7 @@
 #include "executor/export/mcap_writer.h"
 #include "executor/export/run_events.h"
 #include "executor/export/value.h"
+#include "executor/faults/end_reason.h"
 #include "executor/record/channels.h"
 #include "executor/states/state_machine.h"
 #include "executor/telemetry/event_log.h"

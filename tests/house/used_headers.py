@@ -13,14 +13,14 @@ from build_tree import FOLDERS, BuildTree
 # (what, part of a header's path, targets that may use it)
 RULES = [
     ("ODE", "/usr/include/ode/", {"sim_physics", "sim_cell"}),
-    ("LCM", "/usr/include/lcm/", {"executor_telemetry", "executor_monitor", "executor_recorded", "tenon-monitor",
-                                  "sim_listener"}),
+    ("LCM", "/usr/include/lcm/", {"executor_telemetry", "executor_monitor", "executor_recorded", "executor_export",
+                                  "tenon-monitor", "sim_listener"}),
     ("ncurses", "/usr/include/curses.h", {"tenon-monitor"}),
     ("yaml-cpp", "/usr/include/yaml-cpp/", {"shared_config"}),
     ("CLI11", "/usr/include/CLI/", {"shared_config"}),
     ("nlohmann-json", "/usr/include/nlohmann/",
-     {"shared_config", "planner_report", "executor_dry_run", "executor_recorded", "executor_telemetry", "sim_cell",
-      "sim_evaluation"}),
+     {"shared_config", "planner_report", "executor_dry_run", "executor_recorded", "executor_export", "executor_telemetry",
+      "sim_cell", "sim_evaluation"}),
 ]
 
 
