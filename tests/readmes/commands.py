@@ -34,6 +34,8 @@ TYPED = {
     "--run result.json --log run.lcmlog --report run.html": "run.html",
     "tenon-inspect plan.tnp --recertify planner/tasks/box_on_table_2d.yaml --cell hw/cells/gantry3.yaml": None,
     "tenon-exec --cell hw/cells/gantry3.yaml --plan plan.tnp --dry-run": None,
+    "tenon-monitor --lcm-url 'file://run.lcmlog?speed=4'": None,
+    "tenon-inspect plan.tnp --log run.lcmlog --report run.html": "run.html",
     "tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap": "run.mcap",
 }
 SLOW = {
@@ -55,6 +57,7 @@ BY_TEST = {
     "--can slcan-listen://127.0.0.1:29536 --json truth.json": "readmes.TheVirtualArmAndItsExecutor",
     "tenon-exec --cell hw/cells/gantry3.yaml --plan plan.tnp --can slcan://127.0.0.1:29536 --log run.lcmlog "
     "--json result.json": "readmes.TheVirtualArmAndItsExecutor",
+    "tenon-monitor": "monitor.TheDashboardBesideARealRun",
     "tenon-plan --new-task plug.stl socket.obj --uniform-mm 2 -o task.yaml": "chain.Assemblies",
     "tenon-plan task.yaml -o plan.tnp": "chain.Assemblies",
     "tenon-evaluate --cell cell.yaml --task task.yaml --plan plan.tnp --experiment worlds.yaml -n 200 --seed 1 "
@@ -183,6 +186,8 @@ def type_all(arguments, wanted, folder):
             failures.append(f"{command}: exit status {ended.returncode}: {ended.stderr}")
         if leaves and not (folder / leaves).exists():
             failures.append(f"{command}: leaves no {leaves}")
+        elif leaves and leaves != "plan.tnp":
+            (folder / leaves).unlink()
         if command == PLANNED and (folder / "plan.tnp").read_bytes() != before:
             failures.append(f"{command}: makes another plan than the build's {PLAN}.tnp")
     return failures
