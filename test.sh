@@ -5,7 +5,8 @@
 #   ./test.sh                  what a commit needs
 #   ./test.sh full             what a release needs: also every start of every task and variant, the long
 #                              studies, clang-tidy and its analyzer on every file, changed or not,
-#                              and the pages' bundle of libraries made anew and compared
+#                              the pages' bundle of libraries made anew and compared, and MCAP files read by the
+#                              reader of its makers (both need npm's registry)
 #   ./test.sh [full] STAGE...  only these stages, of: format lint unit guest asan tsan
 #                              and on demand: fuzz (full: a million runs of every binary decoder, 200,000 of
 #                              every text loader; hours)

@@ -241,6 +241,37 @@ TEST_F(ExportLogTest, WhatMeansNothingInAStateIsEmptyAndWhatCameTwiceIsLeftOut) 
   EXPECT_EQ(rows[2]["event"], "running");
 }
 
+// No plan, no steps, no thresholds; and joints by their names.
+TEST_F(ExportLogTest, ALogOfAnIdentificationIsWrittenToo) {
+  {
+    EventLog log(file("run.lcmlog"));
+    tenon::run_setup_t setup{};
+    setup.robot = "arm";
+    setup.joint_count = 1;
+    setup.joint_names = "shoulder";
+    setup.joint_linear = {0};
+    setup.joint_lower = {-1.0};
+    setup.joint_upper = {2.0};
+    log_message(log, kSetupChannel, setup);
+    log_message(log, kCycleChannel, cycle_at(0, State::kRunning));
+    tenon::run_summary_t summary{};
+    summary.message = "measured";
+    summary.end_reason = static_cast<std::int8_t>(EndReason::kMeasured);
+    summary.monotonic_ns = 5'000'000'000;
+    log_message(log, kRunChannel, summary);
+  }
+  const Exported told = exported();
+  EXPECT_THAT(told.missing, IsEmpty());
+  EXPECT_THAT(told.notes, IsEmpty());
+  auto rows = rows_of(folder.get("run.csv"));
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0]["joint_shoulder_rad"], "0.25");
+  EXPECT_EQ(rows[0]["joint_shoulder_commanded_rad"], "0.5");
+  EXPECT_EQ(rows[0]["contact_from_N"], "");
+  EXPECT_EQ(rows[0]["event"], "running; done: measured");
+  EXPECT_THAT(folder.get("run.mcap"), HasSubstr(R"("joint_shoulder_upper_rad":2)"));
+}
+
 // Of what anybody sends, clocks and numbers included.
 TEST_F(ExportLogTest, WhateverTheMessagesSayFilesComeOfIt) {
   constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
