@@ -10,7 +10,7 @@ set -euo pipefail
 
 build_packages=(
   build-essential cmake ninja-build ccache
-  libeigen3-dev libode-dev liblcm-dev liblcm-bin libncurses-dev
+  libeigen3-dev libode-dev liblcm-dev liblcm-bin libncurses-dev libmicrohttpd-dev
   libyaml-cpp-dev liburdfdom-dev libconsole-bridge-dev libcli11-dev nlohmann-json3-dev
 )
 test_packages=(

@@ -59,7 +59,7 @@ set(package ${CMAKE_INSTALL_LIBDIR}/cmake/tenon)
 install(EXPORT tenon NAMESPACE tenon:: FILE tenon-targets.cmake DESTINATION ${package} COMPONENT dev)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/tenon-config-version.cmake
   VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
-install(FILES .cmake/package/tenon-config.cmake .cmake/FindLCM.cmake .cmake/FindODE.cmake
+install(FILES .cmake/package/tenon-config.cmake .cmake/FindLCM.cmake .cmake/FindMicroHttpd.cmake .cmake/FindODE.cmake
               ${PROJECT_BINARY_DIR}/package/tenon-config-version.cmake
         DESTINATION ${package} COMPONENT dev)
 
@@ -102,7 +102,7 @@ set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "plan how to fit parts together by touch
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libtenon-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "libeigen3-dev, libode-dev, liblcm-dev, liblcm-bin, libyaml-cpp-dev, liburdfdom-dev, libconsole-bridge-dev, libcli11-dev, nlohmann-json3-dev")
+    "libeigen3-dev, libode-dev, liblcm-dev, liblcm-bin, libyaml-cpp-dev, liburdfdom-dev, libconsole-bridge-dev, libcli11-dev, nlohmann-json3-dev, libmicrohttpd-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "planner and executor as libraries of C++
  Headers, static libraries and find_package(tenon): planner/planner.h takes a
  task and gives a plan, executor/plan_executor.h takes a plan and feedback and

@@ -19,7 +19,7 @@ set(TENON_LIBRARIES shared shared_canopen shared_mit shared_system shared_drawin
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry executor_monitor executor_recorded
     executor_export hw_can hw_canopen hw_cia402 hw_sensors hw_arm hw_mit hw_robot_arm hw_load hw_check
-    sim_physics sim_cell sim_listener sim_evaluation sim_evaluation_chain)
+    sim_physics sim_cell sim_listener sim_view sim_evaluation sim_evaluation_chain)
 
 set(TENON_MAY_USE_shared        Eigen3::Eigen)
 set(TENON_MAY_USE_shared_canopen shared)
@@ -75,6 +75,9 @@ set(TENON_MAY_USE_sim_physics    shared ODE::ODE)
 # The arm's links and joints are bodies of the same engine.
 set(TENON_MAY_USE_sim_cell       shared shared_canopen shared_mit shared_eds sim_physics ODE::ODE nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_sim_listener   shared shared_system lcmtypes lcmtypes_received LCM::lcm)
+# The one server of web pages.
+set(TENON_MAY_USE_sim_view       shared shared_system shared_drawing sim_cell Threads::Threads
+                                 MicroHttpd::microhttpd nlohmann_json::nlohmann_json)
 set(TENON_MAY_USE_sim_evaluation shared shared_system shared_drawing sim_cell
                                  nlohmann_json::nlohmann_json)
 # The evaluation runs executor and virtual arm in lockstep inside one process.
@@ -89,7 +92,7 @@ set(TENON_MAY_USE_tenon-inspect  planner planner_report executor_recorded sim_ph
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
                                  executor_loop executor_telemetry hw_can hw_robot_arm hw_load shared_config)
 set(TENON_MAY_USE_tenon-monitor  executor_monitor executor_export executor_telemetry shared_config LCM::lcm Ncurses::ncursesw)
-set(TENON_MAY_USE_tenon-sim      sim_cell sim_listener hw_can shared_eds shared_config)
+set(TENON_MAY_USE_tenon-sim      sim_cell sim_listener sim_view hw_can shared_eds shared_config)
 set(TENON_MAY_USE_tenon-evaluate sim_evaluation_chain sim_evaluation sim_cell hw_load shared_config)
 set(TENON_MAY_USE_tenon-can      hw_can hw_canopen hw_cia402 hw_mit hw_check shared_eds shared_config)
 

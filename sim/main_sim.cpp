@@ -1,7 +1,8 @@
 // tenon-sim: the virtual arm on its own clock. It answers on CAN like a real cell; what it knows
-// beyond that goes to the truth file alone.
+// beyond that goes to the truth file, and to who looks on from this machine (--view).
 
 #include <sched.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -37,6 +38,8 @@
 #include "sim/cell/virtual_arm/virtual_cell.h"
 #include "sim/cell/virtual_arm/world_draw.h"
 #include "sim/listener/step_listener.h"
+#include "sim/view/live_view.h"
+#include "sim/view/loopback.h"
 
 namespace {
 
@@ -61,6 +64,7 @@ struct CommandLine {
   std::string lcm_url;
   std::string json;
   std::string ready_file;
+  std::optional<std::uint16_t> view_port;
   bool once = false;
 };
 
@@ -76,8 +80,9 @@ struct Lateness {
   }
 };
 
+/// @param server, steps, view null where there is none
 Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer* server,
-             sim::StepListener* steps) {
+             sim::StepListener* steps, sim::LiveView* view) {
   Lateness lateness;
   sim::OneClient one_client;
   std::int64_t due_ns = monotonic_now_ns();
@@ -90,6 +95,7 @@ Lateness run(sim::VirtualCell& cell, sim::FaultyBus& bus, const hw::SlcanServer*
     if (steps != nullptr) steps->listen();
     bus.advance(now_ns);
     cell.step(now_ns, bus);
+    if (view != nullptr) view->look(cell, now_ns);
     if (server != nullptr &&
         one_client.finished(server->clients() > 0, cell.at_standstill(), now_ns)) {
       break;
@@ -108,7 +114,9 @@ std::string place(const std::string& uri, const CanBus& bus) {
   return "listening on " + address.substr(0, address.rfind(':')) + ":" + std::to_string(port);
 }
 
-void announce(const CommandLine& line, const hw::BusUris& uris, hw::Buses& buses) {
+void announce(const CommandLine& line, const hw::BusUris& uris, hw::Buses& buses,
+              const sim::LiveView* view) {
+  if (view != nullptr) std::printf("view: %s\n", view->url().c_str());
   std::string text = place(uris.arm, buses.arm());
   if (buses.sensor() != nullptr) {
     text = "arm: " + text + "\nsensor: " + place(uris.sensor, *buses.sensor());
@@ -185,6 +193,7 @@ void tell_who_waited_in_vain(const CommandLine& line, const std::vector<sim::Fau
 sim::VirtualCell::Options world_of(const CommandLine& line, const Task& task) {
   sim::VirtualCell::Options options;
   options.start = line.start;
+  options.watched = line.view_port.has_value();
   options.seed = line.seed.value_or(0);
   if (!line.offset.empty()) options.offset = sim::parse_offset(line.offset, task.coordinates);
   if (line.seed) {
@@ -202,6 +211,33 @@ sim::VirtualCell::Options world_of(const CommandLine& line, const Task& task) {
     }
   }
   return options;
+}
+
+/// Null where nobody wants to look on.
+std::unique_ptr<sim::LiveView> open_view(const CommandLine& line, const Cell& cell_file,
+                                         const Task& task, const sim::WorldDraw& world,
+                                         const sim::VirtualCell& cell) {
+  if (!line.view_port) return nullptr;
+  sim::ViewedWorld viewed;
+  viewed.task = sim::real_task(task, world);
+  viewed.start = line.start;
+  viewed.cell = cell_file.name;
+  viewed.X_BT = cell_file.X_BT;
+  viewed.X_BE = cell.environment();
+  viewed.drives = cell_file.robot.joints.size();
+  viewed.run_id = std::to_string(::getpid()) + "-" + std::to_string(monotonic_now_ns());
+  return std::make_unique<sim::LiveView>(*line.view_port, viewed);
+}
+
+/// What people are told at the end, on the terminal and in the view.
+void tell_the_end(const sim::Truth& truth, sim::LiveView* view) {
+  std::fputs(sim::describe(truth).c_str(), stdout);
+  std::printf("simulated %.1f s; woke late by more than 1 ms %llu of %llu times, worst %.2f ms\n",
+              truth.time_s, static_cast<unsigned long long>(truth.wakes_late),
+              static_cast<unsigned long long>(truth.wakes), truth.late_max_ms);
+  if (view == nullptr) return;
+  view->end(truth);
+  std::fputs(view->describe().c_str(), stdout);
 }
 
 int simulate(const CommandLine& line) {
@@ -225,22 +261,22 @@ int simulate(const CommandLine& line) {
   if (line.once && server == nullptr) {
     throw InputError("--once: needs a bus with clients, such as --can slcan-listen://127.0.0.1:0");
   }
+  // Its threads are none of the simulation's, and get nothing of its priority.
+  const auto view = open_view(line, cell_file, task, options.world, cell);
   raise_priority();
   stop_on_signals(stop_requested);
-  announce(line, uris, buses);
+  announce(line, uris, buses, view.get());
   sim::FaultyBus faulty_bus(buses.all(), options.faults, cell_file.robot.master_node,
                             monotonic_now_ns(), &phases);
-  const Lateness lateness = run(cell, faulty_bus, line.once ? server : nullptr, steps.get());
+  const Lateness lateness =
+      run(cell, faulty_bus, line.once ? server : nullptr, steps.get(), view.get());
 
   sim::Truth truth = cell.truth();
   truth.wakes = lateness.wakes;
   truth.wakes_late = lateness.late;
   truth.late_max_ms = static_cast<double>(lateness.max_ns) * 1e-6;
   truth.frames_lost = buses.all().status().send_failures;
-  std::fputs(sim::describe(truth).c_str(), stdout);
-  std::printf("simulated %.1f s; woke late by more than 1 ms %llu of %llu times, worst %.2f ms\n",
-              truth.time_s, static_cast<unsigned long long>(truth.wakes_late),
-              static_cast<unsigned long long>(truth.wakes), truth.late_max_ms);
+  tell_the_end(truth, view.get());
   tell_who_waited_in_vain(line, options.faults, phases);
   FinalFiles files;
   files.write({"--json", line.json}, sim::truth_json(truth));
@@ -299,6 +335,13 @@ int parse_and_simulate(int argc, char** argv) {
       ->check(CLI::ExistingDirectory);
   app.add_option("--json", line.json, "file for the truth, written whole at the end");
   app.add_option("--ready-file", line.ready_file, "file that appears when the bus is open");
+  app.add_option_function<std::string>(
+         "--view",
+         [&line](const std::string& text) { line.view_port = sim::parse_view_port(text); },
+         "shows the cell as it really is, live, in a browser on this machine: at "
+         "http://127.0.0.1:PORT/, or at a free port")
+      ->expected(0, 1)
+      ->option_text("[PORT]");
   app.add_flag("--once", line.once, "end when the client has gone and the arm is at rest");
   parse(app, argc, argv);
   return simulate(line);

@@ -22,14 +22,21 @@ std::string inside_script(const std::string& json) {
   return safe;
 }
 
-std::string head(const std::string& title, const char* scripts) {
+// A browser asks a server for an icon, too, unless it has one.
+constexpr const char* kOfServedPage =
+    "script-src 'unsafe-inline'; connect-src 'self'; img-src data:\">\n"
+    "<link rel='icon' href='data:,'>";
+constexpr const char* kOfLivePage = "script-src 'unsafe-inline'; img-src data:\">";
+
+/// @param policy the rest of the page's policy, to the end of its element
+std::string head(const std::string& title, const char* policy) {
   std::string html =
       "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>\n"
       "<meta name='viewport' content='width=device-width,initial-scale=1'>\n"
       "<meta name='color-scheme' content='light dark'>\n"
       "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; "
       "style-src 'unsafe-inline'; ";
-  html.append(scripts).append("img-src data:\">\n<title>").append(title);
+  html.append(policy).append("\n<title>").append(title);
   html += "</title>\n<style>";
   html += page_style();
   return html + "</style></head>\n<body>\n";
@@ -42,7 +49,7 @@ std::string content(const std::string& heading, const std::string& body) {
 }  // namespace
 
 std::string live_document(const LivePage& page) {
-  std::string html = head(page.title, "script-src 'unsafe-inline'; ") +
+  std::string html = head(page.title, page.asks_its_server ? kOfServedPage : kOfLivePage) +
                      content(page.heading, page.body) +
                      "<script type='application/json' id='page-data'>" + inside_script(page.json) +
                      "</script>\n<script>";
@@ -53,7 +60,8 @@ std::string live_document(const LivePage& page) {
 }
 
 std::string still_document(const StillPage& page) {
-  return head(page.title, "") + content(page.heading, page.body) + "</body></html>\n";
+  return head(page.title, "img-src data:\">") + content(page.heading, page.body) +
+         "</body></html>\n";
 }
 
 }  // namespace tenon::drawing

@@ -12,9 +12,10 @@ struct LivePage {
   std::string heading;  ///< HTML of the page's head: what it is about, and the verdict
   std::string body;     ///< HTML; the scripts fill what has a data-part, see page/README.md
   std::string json;     ///< the page's data, see page/README.md
+  bool asks_its_server = false;  ///< its scripts may ask who served it, and nobody else
 };
 
-/// One document that loads nothing: its security policy forbids it to.
+/// One document that loads nothing else: its security policy forbids it to.
 [[nodiscard]] std::string live_document(const LivePage& page);
 
 /// The same without data and scripts: words, tables and pictures that stand still.

@@ -54,6 +54,7 @@ RESERVED = [
      or path.startswith(("executor/telemetry/", "executor/monitor/", "executor/recorded/", "executor/export/",
                          "sim/listener/", "lcmtypes/"))),
     ("ncurses", re.compile(r"^n?curses"), lambda path, main: path == "executor/main_monitor_screen.cpp"),
+    ("libmicrohttpd", re.compile(r"^microhttpd"), lambda path, main: path.startswith("sim/view/")),
     ("yaml-cpp", re.compile(r"^yaml-cpp/"),
      lambda path, main: path.startswith(("shared/config/", "tests/"))),
     ("urdfdom", re.compile(r"^urdf"), lambda path, main: path.startswith("shared/config/")),
@@ -70,7 +71,7 @@ RESERVED = [
                 r"fcntl\.h|poll\.h|netdb\.h|termios\.h|pty\.h|(sys|net|netinet|arpa|linux)/.*)$"),
      lambda path, main: not path.startswith("shared/") or path.startswith(SYSTEM)),
     ("starts threads; shared/system/fan_out.h does", re.compile(r"^(thread|future|stop_token)$"),
-     lambda path, main: main or path.startswith(("shared/system/", "executor/telemetry/", "tests/"))),
+     lambda path, main: main or path.startswith(("shared/system/", "executor/telemetry/", "sim/view/", "tests/"))),
 ]
 
 # (what, pattern in the code, who may have it)
@@ -244,6 +245,7 @@ SELF_TEST = [
     ("executor/g.cpp", "#include <lcm/lcm-cpp.hpp>\n", "(LCM) is not for this file"),
     ("executor/telemetry/g.cpp", '#include "lcmtypes/tenon/status_t.hpp"\n', None),
     ("executor/monitor/g.cpp", "#include <curses.h>\n", "(ncurses) is not for this file"),
+    ("sim/evaluation/g.cpp", "#include <microhttpd.h>\n", "(libmicrohttpd) is not for this file"),
     ("executor/h.cpp", '#include "shared/config/load_task.h"\n', "is for mains and tests alone"),
     ("executor/main_exec.cpp", '#include "shared/config/load_task.h"\n#include <CLI/CLI.hpp>\n', None),
     ("shared/i.cpp", "#include <thread>\n", "is not for this file"),

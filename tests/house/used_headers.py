@@ -16,11 +16,12 @@ RULES = [
     ("LCM", "/usr/include/lcm/", {"executor_telemetry", "executor_monitor", "executor_recorded", "executor_export",
                                   "tenon-monitor", "sim_listener"}),
     ("ncurses", "/usr/include/curses.h", {"tenon-monitor"}),
+    ("libmicrohttpd", "/usr/include/microhttpd.h", {"sim_view"}),
     ("yaml-cpp", "/usr/include/yaml-cpp/", {"shared_config"}),
     ("CLI11", "/usr/include/CLI/", {"shared_config"}),
     ("nlohmann-json", "/usr/include/nlohmann/",
      {"shared_config", "planner_report", "executor_dry_run", "executor_recorded", "executor_export", "executor_telemetry",
-      "sim_cell", "sim_evaluation"}),
+      "sim_cell", "sim_evaluation", "sim_view"}),
 ]
 
 

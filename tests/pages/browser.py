@@ -122,7 +122,9 @@ class Browser:
             time.sleep(0.05)
 
     def open(self, file, width=1400, height=900, dark=False, calm=True, fragment=""):
-        """@param calm: the reader wants no motion: nothing plays by itself"""
+        """@param file: or an address that begins with http  @param calm: the reader wants no motion: nothing plays by
+        itself"""
+        served = str(file).startswith("http")
         self.events.clear()
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
                   mobile=width < 600)
@@ -131,13 +133,14 @@ class Browser:
             {"name": "prefers-reduced-motion", "value": "reduce" if calm else "no-preference"}])
         self.call("Page.navigate", url="about:blank")
         self.events.clear()
-        self.call("Page.navigate", url=pathlib.Path(file).resolve().as_uri() + fragment)
+        self.call("Page.navigate", url=(str(file) if served else pathlib.Path(file).resolve().as_uri()) + fragment)
         self.wait_for("document.readyState === 'complete' && document.body.childElementCount > 0")
 
     def said(self):
         """What the page wrote to the console, threw, or the browser noted about it."""
         texts = []
-        while (event := self.receive(0.2)) is not None:
+        end = time.monotonic() + 1.0  # a page that is served events never falls silent
+        while time.monotonic() < end and (event := self.receive(0.2)) is not None:
             self.events.append(event)
         for event in self.events:
             parameters = event.get("params", {})

@@ -77,6 +77,9 @@ class GlScene {
       environment: faces({}),
       touched: faces({}),
       environmentEdges: lines({ opacity: 0.35 }),
+      // Behind whatever really stands in the same plane.
+      nominal: faces({ transparent: true, opacity: 0.1, depthWrite: false, polygonOffsetFactor: 4 }),
+      nominalEdges: lines({ opacity: 0.4 }),
       front: faces({}),
       frontEdges: lines({ opacity: 0.9 }),
       particle: faces({ transparent: true, opacity: 0.08, depthWrite: false }),
@@ -90,6 +93,8 @@ class GlScene {
     };
     const m = this.materials;
     this.environment = this.bodyOf(environment, m.environment, m.environmentEdges);
+    this.nominal = this.bodyOf(this.data.nominal ? environment : [], m.nominal, m.nominalEdges);
+    if (this.data.nominal) this.place(this.nominal, this.data.nominal);
     this.particles = this.data.particles.map(() => this.bodyOf(held, m.particle, m.particleEdges));
     this.front = this.bodyOf(held, m.front, m.frontEdges);
     this.goal = new T.Group();
@@ -113,7 +118,7 @@ class GlScene {
     this.arrow.renderOrder = 4;
     this.rings = new T.Group();
     this.buildTrails();
-    this.scene.add(this.environment, ...this.particles, this.front, this.goal, ...this.paths);
+    this.scene.add(this.environment, this.nominal, ...this.particles, this.front, this.goal, ...this.paths);
     this.scene.add(this.draws, this.track, this.tips, this.whisker, this.arrow, this.rings);
   }
 
@@ -183,6 +188,8 @@ class GlScene {
     m.environment.color.set(palette.environment);
     m.touched.color.set(palette.contact);
     m.environmentEdges.color.set(palette.ink);
+    m.nominal.color.set(palette.muted);
+    m.nominalEdges.color.set(palette.muted);
     m.front.color.set(palette.part);
     m.frontEdges.color.set(palette.ink);
     m.particle.color.set(palette.particle);

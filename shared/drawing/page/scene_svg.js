@@ -75,11 +75,18 @@ class SvgScene {
         "fill-opacity": 0.35,
       }),
     );
+    const nominal = (this.data.nominal ? this.data.scene.environment : []).map((shape) =>
+      svgElement("path", {
+        d: this.shadow(shape, this.data.nominal),
+        fill: this.palette.muted,
+        "fill-opacity": 0.14,
+      }),
+    );
     this.trails = svgElement("g");
     this.shownTrails = NO_TRAILS;
     this.moving = svgElement("g");
     const still = this.environment.map((entry) => entry.path);
-    this.svg.replaceChildren(...still, ...goal, this.trails, this.moving);
+    this.svg.replaceChildren(...nominal, ...still, ...goal, this.trails, this.moving);
   }
 
   part(pose, attributes) {

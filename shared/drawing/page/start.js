@@ -6,4 +6,5 @@
   if (data.kind === "plan") new PlanPage(data);
   if (data.kind === "evaluation") new EvaluationPage(data);
   if (data.kind === "run") new RunPage(data);
+  if (data.kind === "live") new LivePage(data);
 }

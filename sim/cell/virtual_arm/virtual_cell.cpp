@@ -19,6 +19,7 @@
 #include "sim/cell/virtual_arm/demand_delay.h"
 #include "sim/cell/virtual_arm/drive_friction.h"
 #include "sim/cell/virtual_arm/effort_mean.h"
+#include "sim/cell/virtual_arm/moment_maker.h"
 #include "sim/cell/virtual_arm/start_joints.h"
 
 namespace tenon::sim {
@@ -116,6 +117,10 @@ class VirtualCell::Impl {
 
   void step(std::int64_t now_ns, CanBus& bus);
   [[nodiscard]] Truth truth() const;
+  [[nodiscard]] CellMoment moment() { return moment_.take(time_ns()); }
+  [[nodiscard]] Pose environment() const {
+    return compose(cell_.X_BT, environment_pose(options_.offset, task_.error_about_m));
+  }
   [[nodiscard]] std::int64_t physics_cost_ns() const { return physics_cost_ns_; }
   [[nodiscard]] bool at_standstill() const;
 
@@ -164,6 +169,7 @@ class VirtualCell::Impl {
   std::uint64_t frames_not_sent_ = 0;
 
   CellWatch watch_{cell_.robot, drives_, arm_, phases_};
+  MomentMaker moment_{drives_, arm_};
 };
 
 void VirtualCell::Impl::make_friction() {
@@ -266,6 +272,7 @@ void VirtualCell::Impl::physics_step() {
   watch_.look_at_drives(time_ns());
   watch_.look_at_contacts(time_ns());
   watch_.look_at_phases(physics_ns_);
+  if (options_.watched) moment_.look();
 }
 
 void VirtualCell::Impl::inject_faults() {
@@ -332,8 +339,7 @@ Truth VirtualCell::Impl::truth() const {
   truth.world = options_.world;
   truth.world.friction = options_.world.friction.value_or(task_.friction.nominal);
   truth.world.contact_stiffness_Npm = cell_.contact_stiffness_Npm;
-  const Pose X_BE = compose(cell_.X_BT, environment_pose(options_.offset, task_.error_about_m));
-  truth.tool = compose(inverse(X_BE), arm_.tool());
+  truth.tool = compose(inverse(environment()), arm_.tool());
   truth.error = displacement_between(task_.goal, truth.tool);
   truth.error_norm_m = truth.error.head<3>().norm();
   truth.error_norm_rad = truth.error.tail<3>().norm();
@@ -369,6 +375,10 @@ VirtualCell::~VirtualCell() = default;
 void VirtualCell::step(std::int64_t now_ns, CanBus& bus) { impl_->step(now_ns, bus); }
 
 Truth VirtualCell::truth() const { return impl_->truth(); }
+
+CellMoment VirtualCell::moment() { return impl_->moment(); }
+
+Pose VirtualCell::environment() const { return impl_->environment(); }
 
 std::int64_t VirtualCell::physics_cost_ns() const { return impl_->physics_cost_ns(); }
 

@@ -24,6 +24,7 @@
 #include "shared/task/task.h"
 #include "sim/cell/faults/fault.h"
 #include "sim/cell/faults/fault_phases.h"
+#include "sim/cell/virtual_arm/cell_moment.h"
 #include "sim/cell/virtual_arm/truth.h"
 #include "sim/cell/virtual_arm/world_draw.h"
 
@@ -42,6 +43,7 @@ class VirtualCell {
     /// By node: what that joint's drive answers like.
     std::map<std::uint8_t, DeviceFile> twins{};
     std::int64_t physics_step_ns = 500'000;
+    bool watched = false;  ///< gathers what moment() tells
     /// A clock of the caller's, read before and after each step of physics, for its cost alone.
     std::int64_t (*stopwatch_ns)() = nullptr;
   };
@@ -59,6 +61,10 @@ class VirtualCell {
   void step(std::int64_t now_ns, CanBus& bus);
 
   [[nodiscard]] Truth truth() const;
+  /// The truth since it was last asked for, where the options have the cell watched. No allocation.
+  [[nodiscard]] CellMoment moment();
+  /// Where the task frame of the environment really stands, in the base: X_BE.
+  [[nodiscard]] Pose environment() const;
   /// What physics took so far by the stopwatch.
   [[nodiscard]] std::int64_t physics_cost_ns() const;
   /// No joint moves.
