@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "planner/belief/belief_summary.h"
+#include "planner/belief/corners.h"
 #include "planner/belief/rollout_pool.h"
 #include "planner/collision.h"
 #include "planner/goal_certainty.h"
@@ -14,6 +15,7 @@
 #include "planner/search/contact_greedy.h"
 #include "planner/search/goal_attractors.h"
 #include "planner/search/guide_way.h"
+#include "planner/search/touch_turns.h"
 #include "planner/search_moves.h"
 #include "planner/searched_graph.h"
 #include "planner/wording.h"
@@ -64,6 +66,8 @@ class Planning {
         search_pool_(options.search_physics ? *options.search_physics : rollout, options.threads),
         succ_(search_pool_, search_move(task, start, assumptions_), task.rollout_step_us,
               edges_of(task)),
+        true_succ_(pool_, search_move(task, start, assumptions_), task.rollout_step_us,
+                   edges_of(task)),
         long_succ_(search_pool_, long_move(task, search_move(task, start, assumptions_)),
                    task.rollout_step_us, edges_of(task)),
         judge_(task, start, {options.method, assumptions_, options.draws}, pool_, now_s_),
@@ -86,12 +90,15 @@ class Planning {
     }
     Attractors attractors = guides_from(start);
     const std::vector<Guide> candidates = attractors.candidates;
+    const bool in_turn = attractors.in_turn;
     searched_.emplace(task_, start, std::move(attractors), succ_);
     const auto enough = [this] {
       return !is_baseline() && succ_.counters().rollouts >= kFirstMoves;
     };
-    if (searched([&] { return out_of_budget() || enough(); }) ||
-        (enough() && (followed(candidates) || searched([this] { return out_of_budget(); })))) {
+    if ((in_turn && followed_in_turn(candidates)) ||
+        searched([&] { return out_of_budget() || enough(); }) ||
+        (enough() &&
+         ((!in_turn && followed(candidates)) || searched([this] { return out_of_budget(); })))) {
       improve();
       return ended(PlanStatus::kPlanned, "");
     }
@@ -116,8 +123,9 @@ class Planning {
   [[nodiscard]] bool out_of_budget() const { return out_of_moves() || out_of_time(); }
 
   [[nodiscard]] std::uint64_t moves_simulated() const {
-    return succ_.counters().rollouts + long_succ_.counters().rollouts +
-           judge_.effort().certification_moves + judge_.effort().validation_moves;
+    return succ_.counters().rollouts + true_succ_.counters().rollouts +
+           long_succ_.counters().rollouts + judge_.effort().certification_moves +
+           judge_.effort().validation_moves;
   }
   [[nodiscard]] std::size_t states() const { return searched_ ? searched_->states() : 0; }
 
@@ -132,14 +140,32 @@ class Planning {
 
   Attractors guides_from(const Belief& start) {
     Attractors attractors = timed(now_s_, report_.times.attractors_s, [&] {
-      return is_baseline() ? Attractors{{}, {}, goal_attractors(task_, start, long_succ_), 0}
-                           : find_attractors(task_, start, long_succ_, pool_.front(),
-                                             [this] { return out_of_budget(); });
+      return is_baseline()
+                 ? Attractors{{}, {}, goal_attractors(task_, start, long_succ_), 0}
+                 : find_attractors(
+                       task_, start, long_succ_, pool_.front(), [this] { return out_of_budget(); },
+                       [this] { return touched_in_turn(); });
     });
     report_.guides = attractors.guides.size();
     report_.unsettled = attractors.unsettled;
     tell(guides_found(attractors.guides, long_succ_.counters().rollouts));
     return attractors;
+  }
+
+  /// Several errors at their largest at once: what touches have to hold for that turn the part.
+  [[nodiscard]] Belief corners() const {
+    return in_cell(corner_belief(task_, start_), task_, assumptions_.contact_stiffness_Npm,
+                   assumptions_.latency_max_s);
+  }
+
+  std::vector<Guide> touched_in_turn() {
+    const std::function<bool()> stop = [this] { return out_of_budget(); };
+    return TouchTurns(task_, corners(), start_.pose, succ_, search_pool_.front(), stop).find();
+  }
+
+  bool followed_in_turn(const std::vector<Guide>& candidates) {
+    for (const Particle& corner : corners().particles) searched_->add(corner);
+    return followed(candidates);
   }
 
   /// Searches, each without what the ones before had refuted. @return whether there is a plan
@@ -165,11 +191,13 @@ class Planning {
                        [this](const Guide& guide) { return leads(guide); });
   }
 
-  /// A start that was not known makes the next try take another way.
+  /// A start that was not known makes the next try take another way; one that was, and did
+  /// otherwise than the search had it, makes the next tries go by the true physics.
   bool leads(const Guide& guide) {
+    SuccessorEngine* succ = &succ_;
     for (int tries = 0; tries < kTriesAGuide && !out_of_budget(); ++tries) {
       const auto way = timed(now_s_, report_.times.search_s, [&] {
-        return follow_guide(guide, task_, searched_->start(), start_.pose, succ_, pool_.front());
+        return follow_guide(guide, task_, searched_->start(), start_.pose, *succ, pool_.front());
       });
       if (!way) return false;
       tell(guide_followed(guide, way->size()));
@@ -181,10 +209,13 @@ class Planning {
       }
       const auto& refutation = std::get<Refutation>(judgement);
       const bool fresh = searched_->add(refutation.chain.start);
-      report_.refusals.push_back(refutation.why +
-                                 (fresh ? "; it becomes a particle" : "; the guide is left"));
+      const bool truer = !fresh && succ != &true_succ_ && options_.search_physics != nullptr;
+      report_.refusals.push_back(refutation.why + (fresh   ? "; it becomes a particle"
+                                                   : truer ? "; followed by the true physics"
+                                                           : "; the guide is left"));
       tell("refuted: " + report_.refusals.back());
-      if (!fresh) return false;
+      if (truer) succ = &true_succ_;
+      if (!fresh && !truer) return false;
     }
     return false;
   }
@@ -306,6 +337,7 @@ class Planning {
   RolloutPool pool_;  ///< of the truth
   RolloutPool search_pool_;
   SuccessorEngine succ_;
+  SuccessorEngine true_succ_;
   SuccessorEngine long_succ_;
   PathJudge judge_;
   std::optional<SearchedGraph> searched_;

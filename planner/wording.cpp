@@ -49,7 +49,10 @@ std::string guide_text(const Guide& guide) {
   std::string contacts;
   for (const ContactAttractor& contact : guide.contacts) {
     contacts += format("%s%s%s to %s", contacts.empty() ? "" : ", ", contact.sign > 0 ? "+" : "-",
-                       axis_name(contact.axis), contact.face ? "a face" : "an edge");
+                       axis_name(contact.axis),
+                       contact.flat != 0 ? "lie flat on a face"
+                       : contact.face    ? "a face"
+                                         : "an edge");
   }
   return contacts;
 }

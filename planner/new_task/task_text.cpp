@@ -1,8 +1,10 @@
 #include "planner/new_task/task_text.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "planner/new_task/push_middle.h"
 #include "shared/base/text.h"
 
 namespace tenon::planner {
@@ -15,6 +17,10 @@ constexpr double kFreeOfDepth = 0.1;
 constexpr double kToleranceMax_m = 2e-3;
 constexpr double kToleranceOfDepth = 0.2;
 constexpr double kToleranceMin_m = 5e-4;
+// A part that is pressed against a wall turns about the tool's origin until it lies flat, for which
+// the origin has to be above what the tip's chamfer leaves out of the wall.
+constexpr double kOriginMax_m = 5e-3;
+constexpr double kOriginOfDepth = 0.2;
 // The plug starts so far above everything, whatever its error.
 constexpr double kAbove_m = 5e-3;
 
@@ -31,19 +37,29 @@ std::string pose_text(const Pose& pose) {
   return position + ", rotation_rad: " + list(turn_rad, 1e-9) + "}";
 }
 
-/// The lowest place of the plug along the way that it goes in, amid its box, in the socket's file.
-Vector3 tip_m(const NewTask& task) {
+/// How far above the plug's tip the tool's origin is.
+double above_tip_m(const NewTask& task) {
+  if (task.uniform_rad == 0.0) return 0.0;
+  return std::min(kOriginMax_m, kOriginOfDepth * task.fit.depth_m);
+}
+
+/// Where the tool's origin is in the socket's file: above the plug's lowest place along the way
+/// that it goes in, amid the plug's box, or, where it turns, where pushes do not turn it.
+Vector3 origin_m(const NewTask& task) {
   const Eigen::Quaterniond frame = frame_along(*task.fit.way_out);
   const Pose X_FP = compose(inverse({Vector3::Zero(), frame}), task.X_SP);
-  Vector3 low_m = Vector3::Constant(1e9);
-  Vector3 high_m = -low_m;
-  for (const Vector3& point : task.plug.solid->mesh().points_m) {
-    const Vector3 there_m =
-        X_FP.position_m + X_FP.orientation * (point + task.plug.solid->centre_m());
-    low_m = low_m.cwiseMin(there_m);
-    high_m = high_m.cwiseMax(there_m);
+  TriangleMesh plug = task.plug.solid->mesh();
+  Eigen::AlignedBox3d box;
+  for (Vector3& point : plug.points_m) {
+    point = X_FP.position_m + X_FP.orientation * (point + task.plug.solid->centre_m());
+    box.extend(point);
   }
-  return frame * Vector3(0.5 * (low_m.x() + high_m.x()), 0.5 * (low_m.y() + high_m.y()), low_m.z());
+  Vector3 origin = box.center();
+  origin.z() = box.min().z() + above_tip_m(task);
+  if (task.uniform_rad > 0.0) {
+    if (const auto middle = push_middle_m(plug, origin.z())) origin.head<2>() = *middle;
+  }
+  return frame * origin;
 }
 
 /// What the file says in numbers.
@@ -57,9 +73,8 @@ struct Numbers {
 
 Numbers numbers_of(const NewTask& task) {
   const Eigen::Quaterniond frame = frame_along(*task.fit.way_out);
-  const Vector3 tip = tip_m(task);
   Numbers n;
-  n.X_TS = inverse({tip, frame});
+  n.X_TS = inverse({origin_m(task), frame});
   n.X_GP = compose(n.X_TS, task.X_SP);
   n.goal_z_m = std::min(kFreeMax_m, kFreeOfDepth * task.fit.depth_m);
   n.tolerance_m =
@@ -93,9 +108,14 @@ std::string shapes_text(const NewTask& task, const Numbers& n) {
     return format("  - name: %s\n    mesh: {file: \"%s\", scale: %g}\n    pose: %s\n", name,
                   part.file.c_str(), part.scale_m, pose_text(pose).c_str());
   };
-  return "# In the tool's frame: its origin is the tip of the plug.\nheld:\n" +
+  const std::string tip =
+      task.uniform_rad == 0.0
+          ? "the tip of the plug"
+          : format("%.3g mm above the tip of the plug, about which the part turns as it is pressed",
+                   1e3 * above_tip_m(task));
+  return "# In the tool's frame: its origin is " + tip + ".\nheld:\n" +
          shape("plug", task.plug, n.X_GP) +
-         "\n# In the task's frame: z is the way out, its origin where the plug's tip stands "
+         "\n# In the task's frame: z is the way out, its origin where the tool's stands "
          "assembled.\nenvironment:\n" +
          shape("socket", task.socket, n.X_TS);
 }
@@ -156,7 +176,7 @@ std::string compliance_text(const NewTask& task, bool turns) {
   std::string text = "\n# How the arm yields.\ncompliance:\n  axes: [x, y, z";
   if (turns) text += task.fit.yaw_matters ? ", rx, ry, rz" : ", rx, ry";
   text += "]\n  mass_kg: 2.0\n  damping_Nspm: 1500.0\n  stiffness_Npm: 1000.0\n";
-  if (turns) text += "  inertia_kgm2: 0.02\n  damping_Nmspr: 2.0\n  stiffness_Nmpr: 5.0\n";
+  if (turns) text += "  inertia_kgm2: 0.02\n  damping_Nmspr: 1.0\n  stiffness_Nmpr: 5.0\n";
   return text;
 }
 

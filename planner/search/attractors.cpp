@@ -73,6 +73,14 @@ class GuideSearch {
     combine(known, seed_.uncertainty_m2, {});
   }
 
+  /// Whether guides have to settle rotations, and their moves are not the task's own.
+  [[nodiscard]] bool turned() const {
+    return task_.guide_moves && seed_.spread.tail<3>().maxCoeff() > 0.0;
+  }
+
+  /// In place of those that were found.
+  void take_over(std::vector<Guide> guides) { found_ = std::move(guides); }
+
   /// See Attractors::unsettled; before take().
   [[nodiscard]] CoordinateMask unsettled() const {
     CoordinateMask mask = 0;
@@ -148,8 +156,9 @@ class GuideSearch {
   }
 
   [[nodiscard]] static bool contains(const std::vector<ContactAttractor>& contacts, int axis) {
-    return std::any_of(contacts.begin(), contacts.end(),
-                       [axis](const ContactAttractor& contact) { return contact.axis == axis; });
+    return std::any_of(contacts.begin(), contacts.end(), [axis](const ContactAttractor& contact) {
+      return contact.axis == axis || has(contact.flat, axis);
+    });
   }
 
   /// Unless the same faces are known in the same order, from where straight legs lead.
@@ -223,19 +232,26 @@ class GuideSearch {
 }  // namespace
 
 Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngine& succ,
-                           Rollout& rollout, const std::function<bool()>& stop) {
+                           Rollout& rollout, const std::function<bool()>& stop,
+                           const std::function<std::vector<Guide>()>& in_turn) {
   ContactPushes pushes(task, start, succ, rollout, stop);
   GuideSearch search(task, start, pushes, stop);
   search.push_from(start, {});
   const Belief about_goal = pushes.spread_about(task.goal);
   if (!about_goal.particles.empty()) search.push_from(about_goal, {});
-  if (!search.certain()) search.look_around();
+  std::vector<Guide> turns;
+  if (!search.certain()) {
+    if (in_turn && search.turned()) turns = in_turn();
+    if (turns.empty()) search.look_around();
+  }
+  const bool turned = !turns.empty();
+  if (turned) search.take_over(std::move(turns));
 
   const CoordinateMask unsettled = search.unsettled();
-  search.sort();
+  if (!turned) search.sort();
   std::vector<Guide> candidates = search.candidates();
   Attractors found{search.take(), std::move(candidates), goal_attractors(task, start, succ),
-                   unsettled};
+                   unsettled, turned};
   if (found.goals.size() > 1 && !found.guides.empty()) {
     Guide through = found.guides.front();
     through.goals.insert(through.goals.begin(), found.goals.back());

@@ -22,6 +22,8 @@ struct Attractors {
   /// Uncertain coordinates along which no guide has a contact: nothing that was pushed against
   /// tells where the part is along them.
   CoordinateMask unsettled = 0;
+  /// The guides are faces touched one after the other, found so: to be followed to the letter.
+  bool in_turn = false;
 };
 
 /// Long pushes along one search axis after the other, from the start and with the start's spread
@@ -39,8 +41,12 @@ struct Attractors {
 /// @param succ with moves at approach speed and time for long ones
 /// @param rollout asked for collisions only
 /// @param stop asked before every push where not empty; true leaves it at what has been found
+/// @param in_turn where not empty: asked for guides (touch_turns.h) where rotations are uncertain
+/// and pushes from the start and about the goal do not settle every axis; the others are looked for
+/// where it has none
 [[nodiscard]] Attractors find_attractors(const Task& task, const Belief& start,
                                          SuccessorEngine& succ, Rollout& rollout,
-                                         const std::function<bool()>& stop = {});
+                                         const std::function<bool()>& stop = {},
+                                         const std::function<std::vector<Guide>()>& in_turn = {});
 
 }  // namespace tenon::planner

@@ -6,6 +6,7 @@
 
 #include "planner/search/free_legs.h"
 #include "planner/search/guide_moves.h"
+#include "planner/search/placing.h"
 #include "planner/search/push_places.h"
 
 namespace tenon::planner {
@@ -15,20 +16,6 @@ namespace {
 constexpr int kAttempts = 20;
 // Every order of contacts is tried, so there are not to be too many.
 constexpr std::size_t kMaxContactsAnAxis = 8;
-
-/// Corners of a box, along the task's axes, around everything that can be touched.
-Eigen::AlignedBox3d around(const std::vector<Shape>& shapes) {
-  Eigen::AlignedBox3d box;
-  for (const Shape& shape : shapes) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vector3 sign((corner & 1) != 0 ? 0.5 : -0.5, (corner & 2) != 0 ? 0.5 : -0.5,
-                         (corner & 4) != 0 ? 0.5 : -0.5);
-      box.extend(shape.pose.position_m +
-                 shape.pose.orientation * shape.size_m.cwiseProduct(sign).eval());
-    }
-  }
-  return box;
-}
 
 /// All of a belief's particles are in contact against a push.
 bool on_face(const Belief& belief, const Primitive& push) {
@@ -67,14 +54,7 @@ void ContactPushes::from_drawn(Random& random, KnownContacts& known) {
 }
 
 Belief ContactPushes::about(const Pose& place, const Spread& from) const {
-  Belief belief;
-  for (Particle particle : from.start.particles) {
-    const Pose tool = displaced(place, displacement_between(from.seed.mean, particle.tool()));
-    if (rollout_.in_collision(tool)) return {};
-    particle.pose = seen_as(particle.environment, tool);
-    belief.particles.push_back(particle);
-  }
-  return belief;
+  return planner::spread_about(place, from.start, from.seed.mean, rollout_);
 }
 
 /// The start's spread along `open` alone.

@@ -34,8 +34,9 @@ std::optional<std::vector<Vector6>> FreeLegs::to(const BeliefSummary& belief, co
   }
   const std::vector<Legs> all = candidates(way, belief.mean);
   const Pose end = displaced(belief.mean, way);
+  const Vector3 aside_m = turned_aside_m(belief.spread, part_);
   for (const double margin_m : {kBeside_m, 0.0}) {
-    const Vector3 half_m = belief.spread.head<3>() + Vector3::Constant(margin_m);
+    const Vector3 half_m = belief.spread.head<3>() + aside_m + Vector3::Constant(margin_m);
     if (!free_at(end, half_m)) continue;  // where all of them lead
     for (const Legs& legs : all) {
       if (free(belief, legs, half_m)) return legs;

@@ -2,10 +2,12 @@
 // Ways through free space, for a tool of which only the spread about its mean is known. Asks for
 // collisions, simulates nothing. One thread.
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
 #include "planner/belief/belief_summary.h"
+#include "planner/search/placing.h"
 #include "shared/ports/rollout.h"
 #include "shared/task/task.h"
 
@@ -16,11 +18,11 @@ class FreeLegs {
   /// @param clear a pose known to be free, above or beside everything: detours go by its
   /// coordinates
   FreeLegs(const Task& task, const Pose& clear, Rollout& rollout)
-      : task_(task), clear_(clear), rollout_(rollout) {}
+      : task_(task), part_(around(task.held)), clear_(clear), rollout_(rollout) {}
 
   /// At most four straight legs from the belief's mean to a place, task axes, m and rad, of which
   /// none brings any corner of the spread into a collision; as few as there are, then as short.
-  /// Empty: none lead there.
+  /// What turns may add to a corner counts as way to it. Empty: none lead there.
   [[nodiscard]] std::optional<std::vector<Vector6>> to(const BeliefSummary& belief,
                                                        const Pose& place);
 
@@ -32,6 +34,7 @@ class FreeLegs {
   [[nodiscard]] bool free_at(const Pose& mean, const Vector3& half_m);
 
   const Task& task_;
+  Eigen::AlignedBox3d part_;
   Pose clear_;
   Rollout& rollout_;
 };

@@ -10,7 +10,7 @@
 namespace tenon::planner {
 
 /// A push along one axis after which the particles stand together along it: contact with a face, or
-/// the loss of one at its edge.
+/// the loss of one at its edge. A part that lies flat on a face then stands as the face does, too.
 struct ContactAttractor {
   int axis = 0;
   int sign = 1;         ///< of the push along it
@@ -23,6 +23,7 @@ struct ContactAttractor {
   std::optional<Pose> via;
   CoordinateMask after = 0;  ///< what contacts before it must have settled
   bool in_legs = true;       ///< some straight legs lead from the start to there
+  CoordinateMask flat = 0;   ///< rotations that the push settles besides
 };
 
 /// Where an inadmissible heuristic leads: to contacts in turn, then past goal attractors, of which

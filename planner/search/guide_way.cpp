@@ -9,6 +9,7 @@
 #include "planner/search/free_legs.h"
 #include "planner/search/guide_moves.h"
 #include "planner/search/heuristics.h"
+#include "planner/search/placing.h"
 
 namespace tenon::planner {
 namespace {
@@ -16,12 +17,29 @@ namespace {
 // How far a part backs off a face that it has touched, besides its spread.
 constexpr double kOff_m = 3e-3;
 constexpr int kLabel = 0;
+// A turned part may meet the mouth's side on the way in, and slides on.
+constexpr int kEnteringMax = 3;
+// With more uncertainty than so many times the goal's it is not worth a try.
+constexpr double kNearlyCertain = 4.0;
+
+/// Translations, the longest way from a place that is clear first.
+std::array<int, 3> by_way(const Pose& clear, const Pose& goal) {
+  const Vector3 way_m = (goal.position_m - clear.position_m).cwiseAbs();
+  std::array<int, 3> axes = {2, 1, 0};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return way_m[a] > way_m[b]; });
+  return axes;
+}
 
 class Walk {
  public:
   Walk(const Task& task, const Belief& start, const Pose& clear, SuccessorEngine& succ,
        Rollout& rollout)
-      : task_(task), clear_(clear), succ_(succ), legs_(task, clear, rollout), belief_(start) {}
+      : task_(task),
+        part_(around(task.held)),
+        clear_(clear),
+        succ_(succ),
+        legs_(task, clear, rollout),
+        belief_(start) {}
 
   [[nodiscard]] BeliefSummary here() const { return summarise(belief_, task_); }
 
@@ -43,10 +61,32 @@ class Walk {
     Pose over = task_.goal;
     over.position_m[axis] = clear_.position_m[axis];
     if (!go(over)) return false;
-    Pose in = here().mean;
-    in.position_m[axis] = task_.goal.position_m[axis];
-    return move_to(in) && at_goal(here(), task_);
+    Pose in;
+    for (int moves = 0; moves < (turned() ? kEnteringMax : 1); ++moves) {
+      in = here().mean;
+      in.position_m[axis] = task_.goal.position_m[axis];
+      if (!move_to(in)) return false;
+      if (at_goal(here(), task_)) return true;
+    }
+    return false;
   }
+
+  /// Over the goal along the longest way there first. @return whether one of them leads in
+  bool arrive() {
+    if (turned() && here().uncertainty_m2 > kNearlyCertain * task_.goal_uncertainty_m2)
+      return false;
+    const Mark touched = mark();
+    for (const int axis : by_way(clear_, task_.goal)) {
+      if (!has(task_.coordinates, axis)) continue;
+      if (enter(axis)) return true;
+      return_to(touched);
+      if (turned()) return false;
+    }
+    return false;
+  }
+
+  /// Rotations are among what is uncertain: who touches the one face may turn off the other.
+  [[nodiscard]] bool turned() const { return task_.motion.carried_axes; }
 
   /// For a second try.
   struct Mark {
@@ -68,10 +108,11 @@ class Walk {
   bool back_off() {
     Vector6 off = Vector6::Zero();
     const Vector6 spread = here().spread;
+    const Vector3 aside_m = turned_aside_m(spread, part_);
     for (int axis = 0; axis < 3; ++axis) {
       for (const Particle& particle : belief_.particles) {
         const int sign = particle.signature.sign(axis);
-        if (sign != 0) off[axis] = sign * (kOff_m + spread[axis]);
+        if (sign != 0) off[axis] = sign * (kOff_m + spread[axis] + aside_m[axis]);
       }
     }
     return off.isZero() || move(off);
@@ -114,6 +155,7 @@ class Walk {
   }
 
   const Task& task_;
+  Eigen::AlignedBox3d part_;
   Pose clear_;
   SuccessorEngine& succ_;
   FreeLegs legs_;
@@ -122,31 +164,20 @@ class Walk {
   std::vector<Pose> waypoints_;  ///< of the mean, all free: where legs have begun and ended
 };
 
-/// Translations, the longest way from a place that is clear first.
-std::array<int, 3> by_way(const Pose& clear, const Pose& goal) {
-  const Vector3 way_m = (goal.position_m - clear.position_m).cwiseAbs();
-  std::array<int, 3> axes = {2, 1, 0};
-  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return way_m[a] > way_m[b]; });
-  return axes;
-}
-
 }  // namespace
 
 std::optional<std::vector<Vector6>> follow_guide(const Guide& guide, const Task& task,
                                                  const Belief& start, const Pose& clear,
                                                  SuccessorEngine& succ, Rollout& rollout) {
   Walk walk(task, start, clear, succ, rollout);
+  const bool turned = walk.turned();
   for (const bool again : {false, true}) {
     for (const ContactAttractor& contact : guide.contacts) {
-      if (!again && is_behind(walk.here(), contact, task)) continue;
+      if (!again && !turned && is_behind(walk.here(), contact, task)) continue;
       if (!walk.touch(contact)) return std::nullopt;
+      if (again && turned && walk.arrive()) return walk.take();
     }
-    const Walk::Mark touched = walk.mark();
-    for (const int axis : by_way(clear, task.goal)) {
-      if (!has(task.coordinates, axis)) continue;
-      if (walk.enter(axis)) return walk.take();
-      walk.return_to(touched);
-    }
+    if (walk.arrive()) return walk.take();
   }
   return std::nullopt;
 }

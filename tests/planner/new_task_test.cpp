@@ -140,6 +140,17 @@ TEST(NewTask, TurnsWhereAskedTo) {
   const Task task = load_task(written.file);
   EXPECT_EQ(task.coordinates, 0b111111);
   EXPECT_GT(task.starts.front().sigma[5], 0.0);
+  sim::OdeRollout physics(task);
+  EXPECT_FALSE(physics.in_collision(task.goal));
+}
+
+TEST(NewTask, ATurningPartIsHeldAboveItsChamfer) {
+  const auto tip_m = [](const Written& written) {
+    const Shape plug = load_task(written.file).held.front();
+    return plug.pose.position_m.z() - 0.5 * plug.size_m.z();
+  };
+  EXPECT_NEAR(tip_m(Written(0.0)), 0.0, 1e-9);
+  EXPECT_NEAR(tip_m(Written(0.05)), -5e-3, 1e-9);
 }
 
 TEST(NewTask, SaysWhatItMeasured) {

@@ -1,0 +1,45 @@
+#include "planner/search/placing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tenon::planner {
+
+Eigen::AlignedBox3d around(const std::vector<Shape>& shapes) {
+  Eigen::AlignedBox3d box;
+  for (const Shape& shape : shapes) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3 sign((corner & 1) != 0 ? 0.5 : -0.5, (corner & 2) != 0 ? 0.5 : -0.5,
+                         (corner & 4) != 0 ? 0.5 : -0.5);
+      box.extend(shape.pose.position_m +
+                 shape.pose.orientation * shape.size_m.cwiseProduct(sign).eval());
+    }
+  }
+  return box;
+}
+
+Belief spread_about(const Pose& place, const Belief& belief, const Pose& mean, Rollout& rollout) {
+  Belief there;
+  for (Particle particle : belief.particles) {
+    const Pose tool = displaced(place, displacement_between(mean, particle.tool()));
+    if (rollout.in_collision(tool)) return {};
+    particle.pose = seen_as(particle.environment, tool);
+    particle.signature = {};
+    there.particles.push_back(particle);
+  }
+  return there;
+}
+
+Vector3 turned_aside_m(const Vector6& spread, const Eigen::AlignedBox3d& part) {
+  if (part.isEmpty()) return Vector3::Zero();
+  const Vector3 reach_m = part.min().cwiseAbs().cwiseMax(part.max().cwiseAbs());
+  Vector3 aside_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    aside_m[axis] = spread[3 + u] * reach_m[v] + spread[3 + v] * reach_m[u];
+  }
+  return aside_m;
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,215 @@
+#include "planner/search/touch_turns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "planner/search/free_legs.h"
+#include "planner/search/guide_moves.h"
+#include "planner/search/placing.h"
+
+namespace tenon::planner {
+namespace {
+
+// How far off a face the nearest particle begins to push.
+constexpr double kFromFace_m = 5e-3;
+// What the middle of the part keeps to a flat side's rim besides what is uncertain.
+constexpr double kToRim_m = 1e-3;
+constexpr std::size_t kTurnsMax = 7;
+// How many beliefs go on from turn to turn.
+constexpr std::size_t kKept = 2;
+// Of what is left, a sum of logarithms: a touch takes at least as much as a third of one deviation.
+constexpr double kWorth = 0.4;
+// A part that a touch turns farther than this away from how it is to stand has not come to lie
+// flat.
+constexpr double kTurnedMax_rad = 0.035;
+// Every so many particles go ahead: where they do not touch, the others need not try.
+constexpr std::size_t kAhead = 4;
+
+bool on_face(const Belief& belief, int axis, int sign) {
+  return std::all_of(belief.particles.begin(), belief.particles.end(),
+                     [&](const Particle& p) { return p.signature.sign(axis) == -sign; });
+}
+
+Belief some_of(const Belief& belief) {
+  Belief some;
+  for (std::size_t i = 0; i < belief.particles.size(); i += kAhead) {
+    some.particles.push_back(belief.particles[i]);
+  }
+  return some;
+}
+
+bool same_touch(const ContactAttractor& a, const ContactAttractor& b) {
+  return a.axis == b.axis && a.sign == b.sign;
+}
+
+}  // namespace
+
+TouchTurns::TouchTurns(const Task& task, const Belief& start, const Pose& clear,
+                       SuccessorEngine& succ, Rollout& rollout, const std::function<bool()>& stop)
+    : task_(task),
+      start_(start),
+      clear_(clear),
+      part_(around(task.held)),
+      succ_(succ),
+      rollout_(rollout),
+      stop_(stop) {
+  int coordinates = 0;
+  for (int axis = 0; axis < 6; ++axis) coordinates += has(task.coordinates, axis) ? 1 : 0;
+  const double enough_m = std::sqrt(task.goal_uncertainty_m2 / std::max(1, coordinates));
+  enough_.head<3>().setConstant(enough_m);
+  enough_.tail<3>().setConstant(enough_m / std::sqrt(task.orientation_weight));
+}
+
+/// Along each axis about the mean.
+Vector6 TouchTurns::deviation(const Belief& belief) const {
+  const Pose about = mean_pose(belief);
+  Vector6 squares = Vector6::Zero();
+  for (const Particle& particle : belief.particles) {
+    squares += displacement_between(about, particle.tool()).cwiseAbs2();
+  }
+  return (squares / static_cast<double>(belief.particles.size())).cwiseSqrt();
+}
+
+double TouchTurns::left_of(const Belief& belief) const {
+  const Vector6 deviations = deviation(belief);
+  double left = 0.0;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (has(task_.coordinates, axis)) left += std::log1p(deviations[axis] / enough_[axis]);
+  }
+  return left;
+}
+
+bool TouchTurns::certain(const Belief& belief) const {
+  const Vector6 deviations = deviation(belief);
+  for (int axis = 0; axis < 6; ++axis) {
+    if (has(task_.coordinates, axis) && deviations[axis] > enough_[axis]) return false;
+  }
+  return true;
+}
+
+std::vector<Guide> TouchTurns::find() {
+  std::vector<Turn> found;
+  std::vector<Turn> kept(1);
+  kept.front().belief = start_;
+  kept.front().left = left_of(start_);
+  for (std::size_t turn = 0; turn < kTurnsMax && !kept.empty() && !stopped(); ++turn) {
+    std::vector<Turn> next;
+    for (const Turn& from : kept) further(from, next);
+    kept = best_of(std::move(next));
+    found.insert(found.end(), kept.begin(), kept.end());
+    if (!kept.empty() && certain(kept.front().belief)) break;
+  }
+  sort(found);
+  std::vector<Guide> guides;
+  guides.reserve(found.size());
+  for (Turn& turn : found) guides.push_back({std::move(turn.contacts), {task_.goal}, 1.0});
+  return guides;
+}
+
+/// Those that are certain by what was left on the way: a touch that turns a part which is askew is
+/// less sure than one that finds it flat.
+void TouchTurns::sort(std::vector<Turn>& turns) const {
+  const auto key = [this](const Turn& turn) {
+    const bool enough = certain(turn.belief);
+    return std::pair(!enough, enough ? turn.passed : turn.left);
+  };
+  std::stable_sort(turns.begin(), turns.end(),
+                   [&](const Turn& a, const Turn& b) { return key(a) < key(b); });
+}
+
+/// Along every axis whose push may still settle something.
+void TouchTurns::further(const Turn& turn, std::vector<Turn>& next) {
+  const Vector6 deviations = deviation(turn.belief);
+  const auto open = [&](int axis) {
+    return has(task_.coordinates, axis) && deviations[axis] > enough_[axis];
+  };
+  for (const Shape& shape : task_.environment) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool turns = open(3 + (axis + 1) % 3) || open(3 + (axis + 2) % 3);
+      if (!has(task_.coordinates, axis) || !(open(axis) || turns)) continue;
+      for (const int sign : {1, -1}) touch_sides(turn, shape, axis, sign, next);
+    }
+  }
+}
+
+void TouchTurns::touch_sides(const Turn& turn, const Shape& shape, int axis, int sign,
+                             std::vector<Turn>& next) {
+  const BeliefSummary from = summarise(turn.belief, task_);
+  double across_m = 0.0;
+  for (int other = 0; other < 3; ++other) {
+    if (other != axis) across_m = std::max(across_m, from.spread[other] + kToRim_m);
+  }
+  const double middle_m = across_m + 0.5 * part_.sizes().maxCoeff();
+  std::vector<Vector3> tried;
+  for (const double enough_m : {across_m, middle_m}) {
+    for (const TouchPlace& side : touch_places(shape, axis, sign, enough_m, clear_.position_m)) {
+      const bool again = std::any_of(tried.begin(), tried.end(), [&](const Vector3& at_m) {
+        return (at_m - side.at_m).norm() < task_.step_m;
+      });
+      if (again || side.to_rim_m < across_m || stopped()) continue;
+      tried.push_back(side.at_m);
+      if (push(turn, side, axis, sign, next)) return;
+    }
+  }
+}
+
+/// With the tool's origin over the place, from where all of the spread is off the side.
+bool TouchTurns::push(const Turn& turn, const TouchPlace& side, int axis, int sign,
+                      std::vector<Turn>& next) {
+  const BeliefSummary from = summarise(turn.belief, task_);
+  const double ahead_m = sign > 0 ? part_.max()[axis] : -part_.min()[axis];
+  const double spread_m = from.spread[axis] + turned_aside_m(from.spread, part_)[axis];
+  Pose via{side.at_m, task_.goal.orientation};
+  via.position_m[axis] -= sign * (ahead_m + spread_m + kFromFace_m);
+  const Belief before = spread_about(via, turn.belief, from.mean, rollout_);
+  if (before.particles.empty()) return false;
+
+  const double way_m = kFromFace_m + 2.0 * spread_m + task_.step_m;
+  if (way_m > longest_move(task_, axis)) return false;
+  const Primitive primitive{0, stored(sign * way_m * Vector6::Unit(axis))};
+  const auto ahead = succ_.successors(some_of(before), {&primitive, 1});
+  if (!ahead.front() || !on_face(*ahead.front(), axis, sign)) return false;
+  const auto ends = succ_.successors(before, {&primitive, 1});
+  if (!ends.front() || !on_face(*ends.front(), axis, sign)) return false;
+
+  const double left = left_of(*ends.front());
+  Turn touched{*ends.front(), turn.contacts, left, turn.passed + left, from.spread};
+  if (left > turn.left - kWorth) return false;
+  const BeliefSummary end = summarise(touched.belief, task_);
+  if (end.mean.orientation.angularDistance(task_.goal.orientation) > kTurnedMax_rad) return false;
+  ContactAttractor contact{axis, sign, end.mean, end.spread[axis], end.uncertainty_m2, true, via};
+  for (int turned = 3; turned < 6; ++turned) {
+    if (turned != 3 + axis && from.spread[turned] > enough_[turned] &&
+        end.spread[turned] < task_.attractor_ratio * from.spread[turned]) {
+      contact.flat |= static_cast<CoordinateMask>(1U << turned);
+    }
+  }
+  touched.contacts.push_back(contact);
+  next.push_back(std::move(touched));
+  return true;
+}
+
+/// The first of them that straight legs lead to and that are not the same touch.
+std::vector<TouchTurns::Turn> TouchTurns::best_of(std::vector<Turn> turns) {
+  sort(turns);
+  std::vector<Turn> kept;
+  for (Turn& turn : turns) {
+    if (kept.size() == kKept || stopped()) break;
+    const ContactAttractor& contact = turn.contacts.back();
+    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Turn& other) {
+      return same_touch(contact, other.contacts.back());
+    });
+    if (!known && in_legs(turn)) kept.push_back(std::move(turn));
+  }
+  return kept;
+}
+
+bool TouchTurns::in_legs(const Turn& turn) {
+  BeliefSummary clear;
+  clear.mean = clear_;
+  clear.spread = turn.before;
+  return FreeLegs(task_, clear_, rollout_).to(clear, *turn.contacts.back().via).has_value();
+}
+
+}  // namespace tenon::planner

@@ -1,0 +1,66 @@
+#pragma once
+// Faces to touch one after the other, each with what the last one has left uncertain: where
+// rotations are uncertain too, and a press against a flat face settles several axes at once.
+// Offline; one thread.
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <vector>
+
+#include "planner/belief/belief_summary.h"
+#include "planner/belief/successor.h"
+#include "planner/search/guide.h"
+#include "planner/search/touch_places.h"
+#include "shared/ports/rollout.h"
+#include "shared/task/task.h"
+
+namespace tenon::planner {
+
+class TouchTurns {
+ public:
+  /// @param start its particles are what the touches have to hold for
+  /// @param succ with the moves of a plan  @param rollout asked for collisions only
+  /// @param stop asked before every push where not empty
+  TouchTurns(const Task& task, const Belief& start, const Pose& clear, SuccessorEngine& succ,
+             Rollout& rollout, const std::function<bool()>& stop);
+
+  /// Guides, first those that reach the goal's certainty, with the least uncertain on the way. At
+  /// every turn each side of each shape is pushed against whose flat part is wider than what is
+  /// uncertain across the push, with the tool's origin over it. Of the touches that free legs lead
+  /// to the two go on that leave the least, until the goal's certainty is reached or no touch adds
+  /// to it.
+  [[nodiscard]] std::vector<Guide> find();
+
+ private:
+  /// A belief, and how it came about.
+  struct Turn {
+    Belief belief;
+    std::vector<ContactAttractor> contacts;
+    double left = 0.0;
+    double passed = 0.0;               ///< the sum of what was left on the way
+    Vector6 before = Vector6::Zero();  ///< spread with which the last touch began
+  };
+
+  [[nodiscard]] Vector6 deviation(const Belief& belief) const;
+  [[nodiscard]] double left_of(const Belief& belief) const;
+  [[nodiscard]] bool certain(const Belief& belief) const;
+  void sort(std::vector<Turn>& turns) const;
+  void further(const Turn& turn, std::vector<Turn>& next);
+  void touch_sides(const Turn& turn, const Shape& shape, int axis, int sign,
+                   std::vector<Turn>& next);
+  bool push(const Turn& turn, const TouchPlace& side, int axis, int sign, std::vector<Turn>& next);
+  [[nodiscard]] std::vector<Turn> best_of(std::vector<Turn> turns);
+  [[nodiscard]] bool in_legs(const Turn& turn);
+  [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
+
+  const Task& task_;
+  Belief start_;
+  Pose clear_;
+  Eigen::AlignedBox3d part_;
+  Vector6 enough_ = Vector6::Zero();  ///< of a deviation, m or rad
+  SuccessorEngine& succ_;
+  Rollout& rollout_;
+  const std::function<bool()>& stop_;
+};
+
+}  // namespace tenon::planner

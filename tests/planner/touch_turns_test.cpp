@@ -1,0 +1,164 @@
+// Faces that are touched one after the other settle rotations, too: a press against a flat one
+// several axes at once.
+
+#include "planner/search/touch_turns.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "planner/belief/corners.h"
+#include "planner/belief/rollout_pool.h"
+#include "planner/search/attractors.h"
+#include "planner/search_moves.h"
+#include "tests/planner/room_task.h"
+
+namespace tenon::planner {
+namespace {
+
+constexpr double kTop_m = 0.0;
+constexpr double kHeight_m = 0.04;
+
+/// A kinematic double: a point with a direction, and a block whose top is at z = 0. The point stops
+/// at a side, and whatever turns it about axes along that side is gone then.
+class BlockRollout final : public Rollout {
+ public:
+  explicit BlockRollout(double half_m)
+      : low_m_(-half_m, -half_m, kTop_m - kHeight_m), high_m_(half_m, half_m, kTop_m) {}
+
+  [[nodiscard]] RolloutResult simulate(const Particle& particle, const MoveParameters& move,
+                                       std::int64_t /*step_us*/,
+                                       std::vector<TraceSample>* /*trace*/) override {
+    const Pose from = particle.tool();
+    const Vector3 way_m = from.orientation * move.displacement.head<3>();
+    RolloutResult result;
+    result.valid = true;
+    result.move.outcome = Outcome::kReached;
+    Pose to = from;
+    int face = -1;
+    double part = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (way_m[axis] == 0.0) continue;
+      const double side_m = way_m[axis] > 0.0 ? low_m_[axis] : high_m_[axis];
+      const double at = (side_m - from.position_m[axis]) / way_m[axis];
+      if (at >= 0.0 && at < part && beside(from.position_m + at * way_m, axis)) {
+        part = at;
+        face = axis;
+      }
+    }
+    to.position_m += part * way_m;
+    if (face >= 0) {
+      const Vector3 turn_rad = rotation_vector(from.orientation);
+      to.orientation = rotation_of(turn_rad[face] * Vector3::Unit(face));
+      result.move.outcome = Outcome::kContact;
+      result.move.signature.bits = ContactSignature::bit(face, way_m[face] > 0.0 ? -1 : 1);
+    }
+    result.move.pose = seen_as(particle.environment, to);
+    return result;
+  }
+  [[nodiscard]] bool in_collision(const Pose& tool) override {
+    const auto p = tool.position_m.array();
+    return (p > low_m_.array()).all() && (p < high_m_.array()).all();
+  }
+  [[nodiscard]] std::unique_ptr<Rollout> clone() const override {
+    return std::make_unique<BlockRollout>(high_m_.x());
+  }
+
+ private:
+  /// Within the side across an axis.
+  [[nodiscard]] bool beside(const Vector3& at_m, int axis) const {
+    for (int other = 0; other < 3; ++other) {
+      if (other != axis && (at_m[other] < low_m_[other] || at_m[other] > high_m_[other])) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  Vector3 low_m_;
+  Vector3 high_m_;
+};
+
+Task block_task(double half_m) {
+  Task task = room_task();
+  task.coordinates = 0b111111;
+  task.compliance.compliant_axes = 0b111111;
+  task.motion.carried_axes = true;
+  task.motion.timeout_us = 60'000'000;
+  task.errors = Distribution::kUniform;
+  task.particle_sigmas = std::sqrt(3.0);
+  Start& start = task.starts.front();
+  start.pose.position_m = {0.0, 0.0, 0.06};
+  start.sigma.head<3>().setConstant(2e-3 / task.particle_sigmas);
+  start.sigma.tail<3>().setConstant(0.05 / task.particle_sigmas);
+  task.goal.position_m = {0.0, 0.0, 1e-3};
+  task.environment = {{"block",
+                       Shape::Kind::kBox,
+                       {2.0 * half_m, 2.0 * half_m, kHeight_m},
+                       {{0.0, 0.0, kTop_m - 0.5 * kHeight_m}, {1, 0, 0, 0}}}};
+  task.held = {{"point", Shape::Kind::kBox, {4e-3, 4e-3, 4e-3}, {{0, 0, 2e-3}, {1, 0, 0, 0}}}};
+  derive_moves(task);
+  return task;
+}
+
+struct Turns {
+  explicit Turns(double half_m)
+      : task(block_task(half_m)),
+        start(task.starts.front()),
+        pool(BlockRollout(half_m), 1),
+        succ(pool, search_move(task, start, {}), task.rollout_step_us,
+             SuccessorEngine::Edges::kTaken) {}
+
+  [[nodiscard]] std::vector<Guide> find() {
+    return TouchTurns(task, corner_belief(task, start), start.pose, succ, pool.front(), {}).find();
+  }
+
+  Task task;
+  Start start;
+  RolloutPool pool;
+  SuccessorEngine succ;
+};
+
+TEST(TouchTurns, PressFlatAndThenAgainstTheWalls) {
+  Turns turns(0.04);
+  const std::vector<Guide> guides = turns.find();
+  ASSERT_FALSE(guides.empty());
+  const std::vector<ContactAttractor>& contacts = guides.front().contacts;
+  // The top, and two walls: one of them tells the yaw, too.
+  ASSERT_EQ(contacts.size(), 3U);
+  CoordinateMask settled = 0;
+  for (const ContactAttractor& contact : contacts) {
+    settled |= static_cast<CoordinateMask>(1U << contact.axis | contact.flat);
+    EXPECT_TRUE(contact.via.has_value());
+    EXPECT_LT(contact.spread, 1e-6);
+  }
+  EXPECT_EQ(settled, 0b111111);
+}
+
+TEST(TouchTurns, LeaveASideThatIsNarrowerThanWhatIsUncertain) {
+  Turns turns(1.5e-3);
+  for (const Guide& guide : turns.find()) {
+    for (const ContactAttractor& contact : guide.contacts) EXPECT_NE(contact.axis, 2);
+  }
+}
+
+TEST(TouchTurns, AreAskedForWhereRotationsAreUncertain) {
+  Turns turns(0.04);
+  const Belief start = cross_polytope(turns.task, turns.start);
+  int asked = 0;
+  const auto in_turn = [&] {
+    ++asked;
+    return turns.find();
+  };
+  const Attractors found =
+      find_attractors(turns.task, start, turns.succ, turns.pool.front(), {}, in_turn);
+  EXPECT_EQ(asked, 1);
+  EXPECT_TRUE(found.in_turn);
+  EXPECT_EQ(found.unsettled, 0);
+  ASSERT_FALSE(found.candidates.empty());
+  EXPECT_NE(found.candidates.front().contacts.front().flat, 0);
+}
+
+}  // namespace
+}  // namespace tenon::planner
