@@ -166,6 +166,19 @@ def check_results(tenon, folder, failures):
         failures.check(run.joint_names == ("x", "y", "z") and run.joint_linear == (True,) * 3, f"{name}: {run.joint_names}")
 
 
+def check_docstrings(tenon, run, failures):
+    """Every field is told by its class, and every shape that is told is the array's."""
+    for kind in (tenon.Run, tenon.Log, tenon.Plan, tenon.Step, tenon.ParameterSet, tenon.OutcomeRule):
+        for field in kind.__dataclass_fields__:
+            failures.check(re.search(rf"^ {{8}}{field}\b", kind.__doc__, re.M), f"{kind.__name__}'s text lacks {field}")
+    sizes = {"N": len(run.time_s), "J": len(run.joint_names)}
+    told = re.findall(r"^ {8}(\w+): \((N(?:, ?\w+)?),?\)", tenon.Run.__doc__, re.M)
+    for name, shape in told:
+        wanted = tuple(sizes.get(size) or int(size) for size in shape.replace(" ", "").split(","))
+        failures.check(getattr(run, name).shape == wanted, f"Run.{name} is {getattr(run, name).shape}, told {wanted}")
+    failures.check(len(told) == 24, f"the shapes of {len(told)} arrays are told")
+
+
 def make_truth(sim, source, file):
     """A virtual arm that is stopped as soon as it is there."""
     ready = file.with_suffix(".ready")
@@ -257,6 +270,7 @@ def main():
             failures.check(refused > EDITS / 10, f"{file.name}: only {refused} edits are refused")
         subprocess.run([runs, folder], check=True, stdout=subprocess.DEVNULL)
         check_results(tenon, folder, failures)
+        check_docstrings(tenon, tenon.read_run(folder / "box.lcmlog"), failures)
         make_truth(programs / "tenon-sim", source, folder / "truth.json")
         check_truth(tenon, folder / "truth.json", failures)
         check_errors(tenon, folder, failures)

@@ -16,7 +16,7 @@ _SYNC = 0xEDA1DA01
 _HEADING = struct.Struct(">Iqqii")
 _NAME_MAX = 255
 
-#: Of Run.state.
+# Of Run.state.
 STATES = ("waiting", "taring", "approaching", "running", "stopping", "quick stopping", "holding", "disabling", "finished",
           "watching the brakes", "catching what a brake does not hold")
 _WAITING, _TARING, _APPROACHING, _RUNNING, _STOPPING, _HOLDING = 0, 1, 2, 3, 4, 6
@@ -25,7 +25,7 @@ _WAITING, _TARING, _APPROACHING, _RUNNING, _STOPPING, _HOLDING = 0, 1, 2, 3, 4, 
 class Event(typing.NamedTuple):
     """A message as a log has it."""
 
-    time_us: int  #: when it was logged, since 1970
+    time_us: int  # when it was logged, since 1970
     channel: str
     data: bytes
 
@@ -35,38 +35,70 @@ class Run:
     """A run: arrays of one row a control cycle, N in all, J joints.
 
     What means nothing in a cycle's state (forces before the tare, commands while nothing is commanded) is not a number.
+
+    Attributes:
+        time_s: (N,) since the first cycle
+        log_time_us: (N,) int64, when it was logged, since 1970
+        cycle: (N,) int64, cycles since the start of the run
+        state: (N,) int8, index into STATES
+        step: (N,) int16 of the plan, -1 where none runs
+        phase: (N,) int8: 0 moving, 1 probing, 2 settling, 3 done
+        contact_bits: (N,) uint16, see contacts()
+        end_reason: (N,) int8, 0 while the run goes on
+        tool_position_m: (N, 3) measured, in the task frame
+        tool_orientation_wxyz: (N, 4)
+        setpoint_position_m: (N, 3) of the compliance law
+        setpoint_orientation_wxyz: (N, 4)
+        commanded_position_m: (N, 3) what the compliance law made of it
+        commanded_orientation_wxyz: (N, 4)
+        velocity: (N, 6) commanded, m/s and rad/s
+        force_N: (N, 3) on the tool by the environment, task axes at the tip
+        torque_Nm: (N, 3)
+        wrench_fresh: (N,) bool: a new sample of the sensor
+        joint_position: (N, J) measured, m or rad
+        joint_commanded: (N, J) commanded, m or rad
+        joints_fresh: (N,) int32, bit i: joint i answered
+        wakeup_late_s: (N,) from the due time to being awake
+        compute_s: (N,) from the last feedback to the last setpoint
+        late_cycles: (N,) int32, periods skipped so far
+        joint_names: J; their numbers where the log does not name them
+        joint_linear: J; m, else rad; None where the log does not say
+        steps: as they ended: time_s, step, outcome, successor, travelled, duration_s, peak_force_N, ...
+        statuses: about ten a second: time_s, pace, bus_load, ...
+        setup: limits and thresholds; None where the log has none
+        summary: the end of the run; None where it is not in the log
     """
 
-    time_s: np.ndarray  #: (N,) since the first cycle
-    log_time_us: np.ndarray  #: (N,) int64, when it was logged, since 1970
-    cycle: np.ndarray  #: (N,) int64, cycles since the start of the run
-    state: np.ndarray  #: (N,) int8, index into STATES
-    step: np.ndarray  #: (N,) int16 of the plan, -1 where none runs
-    phase: np.ndarray  #: (N,) int8: 0 moving, 1 probing, 2 settling, 3 done
-    contact_bits: np.ndarray  #: (N,) uint16, see contacts()
-    end_reason: np.ndarray  #: (N,) int8, 0 while the run goes on
-    tool_position_m: np.ndarray  #: (N, 3) measured, in the task frame
-    tool_orientation_wxyz: np.ndarray  #: (N, 4)
-    setpoint_position_m: np.ndarray  #: (N, 3) of the compliance law
-    setpoint_orientation_wxyz: np.ndarray  #: (N, 4)
-    commanded_position_m: np.ndarray  #: (N, 3) what the compliance law made of it
-    commanded_orientation_wxyz: np.ndarray  #: (N, 4)
-    velocity: np.ndarray  #: (N, 6) commanded, m/s and rad/s
-    force_N: np.ndarray  #: (N, 3) on the tool by the environment, task axes at the tip
-    torque_Nm: np.ndarray  #: (N, 3)
-    wrench_fresh: np.ndarray  #: (N,) bool: a new sample of the sensor
-    joint_position: np.ndarray  #: (N, J) measured, m or rad
-    joint_commanded: np.ndarray  #: (N, J)
-    joints_fresh: np.ndarray  #: (N,) int32, bit i: joint i answered
-    wakeup_late_s: np.ndarray  #: (N,)
-    compute_s: np.ndarray  #: (N,)
-    late_cycles: np.ndarray  #: (N,) int32, periods skipped so far
-    joint_names: typing.Tuple[str, ...]  #: J; their numbers where the log does not name them
-    joint_linear: typing.Tuple[typing.Optional[bool], ...]  #: J; m, else rad; None where the log does not say
-    steps: Records  #: as they ended: time_s, step, outcome, successor, travelled, duration_s, peak_force_N, ...
-    statuses: Records  #: about ten a second: time_s, pace, bus_load, ...
-    setup: typing.Optional[Record]  #: limits and thresholds; None where the log has none
-    summary: typing.Optional[Record]  #: the end of the run; None where it is not in the log
+    time_s: np.ndarray
+    log_time_us: np.ndarray
+    cycle: np.ndarray
+    state: np.ndarray
+    step: np.ndarray
+    phase: np.ndarray
+    contact_bits: np.ndarray
+    end_reason: np.ndarray
+    tool_position_m: np.ndarray
+    tool_orientation_wxyz: np.ndarray
+    setpoint_position_m: np.ndarray
+    setpoint_orientation_wxyz: np.ndarray
+    commanded_position_m: np.ndarray
+    commanded_orientation_wxyz: np.ndarray
+    velocity: np.ndarray
+    force_N: np.ndarray
+    torque_Nm: np.ndarray
+    wrench_fresh: np.ndarray
+    joint_position: np.ndarray
+    joint_commanded: np.ndarray
+    joints_fresh: np.ndarray
+    wakeup_late_s: np.ndarray
+    compute_s: np.ndarray
+    late_cycles: np.ndarray
+    joint_names: typing.Tuple[str, ...]
+    joint_linear: typing.Tuple[typing.Optional[bool], ...]
+    steps: Records
+    statuses: Records
+    setup: typing.Optional[Record]
+    summary: typing.Optional[Record]
 
     @property
     def state_names(self):
@@ -76,13 +108,21 @@ class Run:
 
 @dataclasses.dataclass(frozen=True)
 class Log:
-    """All runs of a log, and how far it could be read."""
+    """All runs of a log, and how far it could be read.
+
+    Attributes:
+        file: its name
+        runs: of Run, those that have a cycle
+        malformed: messages that make no sense and are left out
+        breaks_off: the file ends within a message
+        damage: where it is no log any more; what stands before is read
+    """
 
     file: str
     runs: typing.List[Run]
-    malformed: int  #: messages that make no sense and are left out
-    breaks_off: bool  #: the file ends within a message
-    damage: typing.Optional[FileError]  #: where it is no log any more; what stands before is read
+    malformed: int
+    breaks_off: bool
+    damage: typing.Optional[FileError]
 
 
 def events(file):

@@ -35,28 +35,65 @@ _UP_TO_1E7 = (0.0, 1e7, True)
 
 @dataclasses.dataclass(frozen=True)
 class OutcomeRule:
-    """Where an outcome leads, and what validation saw of it."""
+    """Where an outcome leads, and what validation saw of it.
 
-    successor: typing.Union[int, str]  #: step, or "done"
-    always: str  #: contacts that every settled signature had, as contacts() has them
-    possible: str  #: contacts that some had
-    travelled_min: np.ndarray  #: (6,) m and rad
-    travelled_max: np.ndarray  #: (6,) m and rad
+    Attributes:
+        successor: step, or "done"
+        always: contacts that every settled signature had, as contacts() has them
+        possible: contacts that some had
+        travelled_min: (6,) m and rad
+        travelled_max: (6,) m and rad
+    """
+
+    successor: typing.Union[int, str]
+    always: str
+    possible: str
+    travelled_min: np.ndarray
+    travelled_max: np.ndarray
 
 
 @dataclasses.dataclass(frozen=True)
 class Step:
-    """A guarded move."""
+    """A guarded move.
 
-    parameter_set: int  #: index into Plan.parameter_sets
-    slow_from_m: float  #: way after which the contact speed holds
-    displacement: np.ndarray  #: (6,) m and rad
-    outcomes: typing.Dict[str, OutcomeRule]  #: by name; every other outcome leads to fail
+    Attributes:
+        parameter_set: index into Plan.parameter_sets
+        slow_from_m: way after which the contact speed holds
+        displacement: (6,) m and rad
+        outcomes: by name; every other outcome leads to fail
+    """
+
+    parameter_set: int
+    slow_from_m: float
+    displacement: np.ndarray
+    outcomes: typing.Dict[str, OutcomeRule]
 
 
 @dataclasses.dataclass(frozen=True)
 class ParameterSet:
-    """Speeds, thresholds and what ends a move; units in the names."""
+    """Speeds, thresholds and what ends a move; units in the names.
+
+    Attributes:
+        approach_mps: speed up to slow_from_m
+        contact_mps: speed from there on
+        acceleration_mps2
+        jerk_mps3
+        approach_radps
+        contact_radps
+        acceleration_radps2
+        jerk_radps3
+        force_on_N: a contact begins above it
+        force_keep_N: that a contact is held with
+        force_off_N: a contact ends below it
+        torque_on_Nm
+        torque_keep_Nm
+        torque_off_Nm
+        debounce_us: that a contact has to last
+        timeout_us: of a move
+        trigger_mask: contacts that end a move, as contacts() has them
+        sensed_axes: on which contacts are decided from the wrench, such as "x y"
+        carried_axes: displacements, contacts and envelopes are in axes that the tool carries
+    """
 
     approach_mps: float
     contact_mps: float
@@ -74,26 +111,58 @@ class ParameterSet:
     torque_off_Nm: float
     debounce_us: int
     timeout_us: int
-    trigger_mask: str  #: contacts that end a move, as contacts() has them
-    sensed_axes: str  #: on which contacts are decided from the wrench, such as "x y"
-    carried_axes: bool  #: displacements, contacts and envelopes are in axes that the tool carries
+    trigger_mask: str
+    sensed_axes: str
+    carried_axes: bool
 
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
-    """A plan: guarded moves, and for each outcome of each the step that follows."""
+    """A plan: guarded moves, and for each outcome of each the step that follows.
+
+    Attributes:
+        version: of the format
+        task_name: of the task that was planned
+        start_name: name of the nominal start
+        task_hash: FNV-1a of the task file that was planned
+        method: "mha", "single-particle", "contact-greedy"
+        check_envelopes: whether execution checks them
+        coordinates: such as "x y rz"
+        start_position_m: (3,) nominal, tool in the task frame
+        start_orientation_wxyz: (4,)
+        goal_position_m: (3,) likewise
+        goal_orientation_wxyz: (4,)
+        goal_tolerance_m: within which a draw is at the goal
+        mass_kg: of the compliance, as the next five
+        damping_Nspm
+        stiffness_Npm
+        inertia_kgm2
+        damping_Nmspr
+        stiffness_Nmpr
+        compliant_axes: that yield, such as "x y"
+        force_limit_N: a held tool is pulled no harder
+        torque_limit_Nm: the same
+        contact_stiffness_Npm: that the plan was certified with
+        latency_max_s: that the plan holds for
+        cost: of the chain
+        bound: cost <= bound times the optimum; 0: none claimed
+        draws: of validation
+        draws_at_goal: of which ended there
+        parameter_sets: of ParameterSet
+        steps: of Step
+    """
 
     version: int
     task_name: str
     start_name: str
     task_hash: int
-    method: str  #: "mha", "single-particle", "contact-greedy"
+    method: str
     check_envelopes: bool
-    coordinates: str  #: such as "x y rz"
-    start_position_m: np.ndarray  #: (3,)
-    start_orientation_wxyz: np.ndarray  #: (4,)
-    goal_position_m: np.ndarray  #: (3,)
-    goal_orientation_wxyz: np.ndarray  #: (4,)
+    coordinates: str
+    start_position_m: np.ndarray
+    start_orientation_wxyz: np.ndarray
+    goal_position_m: np.ndarray
+    goal_orientation_wxyz: np.ndarray
     goal_tolerance_m: float
     mass_kg: float
     damping_Nspm: float
@@ -107,7 +176,7 @@ class Plan:
     contact_stiffness_Npm: float
     latency_max_s: float
     cost: float
-    bound: float  #: cost <= bound times the optimum; 0: none claimed
+    bound: float
     draws: int
     draws_at_goal: int
     parameter_sets: typing.List[ParameterSet]
