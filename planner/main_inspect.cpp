@@ -203,6 +203,10 @@ int run(const Arguments& a) {
   if (!a.report.empty() && a.task.empty() && a.run.empty() && a.log.empty()) {
     throw InputError("--report needs --task TASK.yaml, or a run of the plan (--run, --log)");
   }
+  if (!a.cell.empty() && a.task.empty() && a.recertify.empty()) {
+    throw InputError(
+        "--cell is for --task and --recertify, and would change nothing here; leave it out");
+  }
   const Plan plan = load_plan(a.plan);
   const std::vector<std::uint8_t> bytes = bytes_of(a.plan);
   const Verdict verdict = a.recertify.empty() ? Verdict{} : recertify(a, plan, bytes);

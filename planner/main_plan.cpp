@@ -144,7 +144,13 @@ void write_each(const Arguments& a, planner::PlannerOptions& options,
 }
 
 /// Looks at the start that is named, else at all.
-int check(const Arguments& a, const Task& task) {
+int check(const Arguments& a, Task task) {
+  std::string changes;
+  if (!a.cell.empty()) {
+    planner::CellFit fit = planner::fit_to_cell(task, load_cell(a.cell));
+    task = std::move(fit.task);
+    changes = planner::cell_changes_text(fit.changes);
+  }
   const std::vector<Start> starts =
       a.start.empty() ? task.starts : std::vector<Start>{chosen_start(task, a.start)};
   const planner::TaskCheck checked =
@@ -152,7 +158,7 @@ int check(const Arguments& a, const Task& task) {
         return std::make_unique<sim::OdeRollout>(part);
       });
   if (!a.report.empty()) write_file(a.report, planner::check_page(a.task, task, checked));
-  std::fputs(planner::check_text(a.task, task, checked).c_str(), stdout);
+  std::fputs((planner::check_text(a.task, task, checked) + changes).c_str(), stdout);
   return checked.refused() ? 2 : 0;
 }
 
@@ -174,8 +180,7 @@ int run(const Arguments& a) {
     write_nothing_more("--check", "--output", a.output);
     write_nothing_more("--check", "--json", a.json);
     check_apart({{"--report", a.report}}, {{"the task", a.task}, {"--cell", a.cell}});
-    if (!a.cell.empty()) task = planner::fit_to_cell(task, load_cell(a.cell)).task;
-    return check(a, task);
+    return check(a, std::move(task));
   }
   if (a.output.empty()) throw InputError("--output is required; see --help");
   if (a.time_limit_s) task.time_limit_s = checked_time_limit_s(*a.time_limit_s);
@@ -242,6 +247,9 @@ int main(int argc, char** argv) {
     if (arguments.task.empty()) {
       if (arguments.output.empty()) throw InputError("--output is required; see --help");
       write_nothing_more("--new-task", "--json", arguments.json);
+      if (!arguments.cell.empty()) {
+        throw InputError("--cell: --new-task writes a task for any cell; leave it out");
+      }
       arguments.new_task.output = arguments.output;
       return write_new_task(arguments.new_task);
     }

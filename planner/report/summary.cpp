@@ -135,6 +135,12 @@ std::string step_table(const Plan& plan) {
   return text;
 }
 
+std::string cell_changes_text(const std::vector<std::string>& changes) {
+  std::string text;
+  for (const std::string& change : changes) text += "for the cell: " + change + "\n";
+  return text;
+}
+
 std::string summary(const PlanReport& report, const Task& task, const std::string& file) {
   const Plan& plan = *report.plan;
   const PlannerTimes& t = report.times;
@@ -172,7 +178,7 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
                arrived(report.validation.rim), report.validation.rim.size(), drawn_sigmas(task));
   }
   for (const std::string& draw : missed(report, task)) text += "missed: " + draw + "\n";
-  for (const std::string& change : report.adapted) text += "for the cell: " + change + "\n";
+  text += cell_changes_text(report.adapted);
   for (const std::string& refusal : report.refusals) text += "refuted: " + refusal + "\n";
   return text + step_table(plan);
 }

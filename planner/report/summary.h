@@ -2,6 +2,7 @@
 // A planning run in words and in JSON.
 
 #include <string>
+#include <vector>
 
 #include "planner/judge/validation.h"
 #include "planner/plan_report.h"
@@ -22,6 +23,9 @@ namespace tenon::planner {
 
 /// A table with a line for each step: displacement, speeds, outcomes with envelopes, successors.
 [[nodiscard]] std::string step_table(const Plan& plan);
+
+/// "for the cell: CHANGE", a line for each of what fit_to_cell() changed.
+[[nodiscard]] std::string cell_changes_text(const std::vector<std::string>& changes);
 
 /// A dozen lines for people about a plan that was found.
 [[nodiscard]] std::string summary(const PlanReport& report, const Task& task,
