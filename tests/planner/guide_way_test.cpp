@@ -108,6 +108,23 @@ TEST(FreeLegs, LeaveRoomForTheSpread) {
   EXPECT_TRUE(stays_free(wall, from, *around));
 }
 
+TEST(FreeLegs, LeaveRoomForWhatIsTurned) {
+  Task task = own_room_task();
+  task.coordinates = 0b111111;
+  task.held = {{"rod", Shape::Kind::kBox, {2e-3, 2e-3, 0.1}, {{0, 0, 0.05}, {1, 0, 0, 0}}}};
+  Block wall({-0.01, 0.012, -0.2}, {0.01, 0.2, 0.03});
+  BeliefSummary from;
+  from.mean = at(-0.05, 0.005, 0.0);
+  const Pose place = at(0.05, 0.005, 0.0);
+  FreeLegs legs(task, at(0.0, 0.0, 0.1), wall);
+  EXPECT_EQ(legs.to(from, place)->size(), 1U);
+  // Its upper end, 100 mm away, is off by 10 mm then.
+  from.spread[3] = 0.1;
+  const auto around = legs.to(from, place);
+  ASSERT_TRUE(around);
+  EXPECT_GT(around->size(), 1U);
+}
+
 struct FollowedRoom {
   explicit FollowedRoom(const Task& of)
       : task(of),

@@ -11,6 +11,7 @@
 #include "planner/belief/corners.h"
 #include "planner/belief/rollout_pool.h"
 #include "planner/search/attractors.h"
+#include "planner/search/guide_way.h"
 #include "planner/search_moves.h"
 #include "tests/planner/room_task.h"
 
@@ -134,6 +135,29 @@ TEST(TouchTurns, PressFlatAndThenAgainstTheWalls) {
     EXPECT_LT(contact.spread, 1e-6);
   }
   EXPECT_EQ(settled, 0b111111);
+}
+
+TEST(TouchTurns, FollowedToTheLetterLeadToTheGoal) {
+  Turns turns(0.04);
+  const std::vector<Guide> guides = turns.find();
+  ASSERT_FALSE(guides.empty());
+  const Belief start = corner_belief(turns.task, turns.start);
+  const auto way = follow_guide(guides.front(), turns.task, start, turns.start.pose, turns.succ,
+                                turns.pool.front());
+  ASSERT_TRUE(way);
+  // Every particle by itself, outside of what was tested.
+  for (Particle particle : start.particles) {
+    for (const Vector6& displacement : *way) {
+      MoveParameters move;
+      move.displacement = displacement;
+      const RolloutResult result = turns.pool.front().simulate(particle, move, 2000, nullptr);
+      particle.pose = result.move.pose;
+      particle.signature = result.move.signature;
+    }
+    const Vector6 off = displacement_between(turns.task.goal, particle.tool());
+    EXPECT_LT(off.head<3>().norm(), 0.1e-3);
+    EXPECT_LT(off.tail<3>().norm(), 1e-3);
+  }
 }
 
 TEST(TouchTurns, LeaveASideThatIsNarrowerThanWhatIsUncertain) {
