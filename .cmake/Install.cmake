@@ -19,7 +19,7 @@ install(DIRECTORY sim/experiments DESTINATION ${data}/sim COMPONENT runtime FILE
         PATTERN results EXCLUDE)
 install(DIRECTORY shared/config/schemas DESTINATION ${data}/shared/config COMPONENT runtime)
 install(PROGRAMS demo.sh DESTINATION ${data} COMPONENT runtime)
-foreach(readme README.md planner/FIRST_TASK.md planner/README.md executor/README.md hw/README.md sim/README.md shared/plan/FORMAT.md)
+foreach(readme README.md planner/FIRST_TASK.md planner/README.md executor/README.md executor/WATCH.md hw/README.md sim/README.md shared/plan/FORMAT.md)
   get_filename_component(folder ${readme} DIRECTORY)
   install(FILES ${readme} DESTINATION ${data}/${folder} COMPONENT runtime)
 endforeach()

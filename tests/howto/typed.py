@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""A how-to, typed word by word: its ```yaml blocks are saved under the name in their first line, its ```sh blocks are
+"""How-tos, typed word by word, one after the other in one folder: their ```yaml blocks are saved under the name in their first line, its ```sh blocks are
 run in order, and every line of the ``` block that follows one must begin a line of what was printed.
 
-  typed.py HOWTO BIN SOURCE        in a network namespace of its own, where all ports are free
+  typed.py BIN SOURCE HOWTO...     in a network namespace of its own, where all ports are free
 
 A run in real time that ended because the machine was too busy is made again.
 """
@@ -47,15 +47,15 @@ def type_in(text, folder, environment):
 
 
 def main():
-    howto, binaries, source = sys.argv[1:]
+    binaries, source, *howtos = sys.argv[1:]
     subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
-    environment = {**os.environ, "PATH": f"{binaries}:{os.environ['PATH']}"}
+    environment = {**os.environ, "PATH": f"{pathlib.Path(binaries).resolve()}:{os.environ['PATH']}"}
     typed = told = 0
     with tempfile.TemporaryDirectory(prefix="tenon_howto_") as name:
         folder = pathlib.Path(name)
-        (folder / "hw").symlink_to(pathlib.Path(source) / "hw")
+        (folder / "hw").symlink_to(pathlib.Path(source).resolve() / "hw")
         printed = ""
-        for kind, text in BLOCK.findall(pathlib.Path(howto).read_text()):
+        for kind, text in BLOCK.findall("\n".join(pathlib.Path(howto).read_text() for howto in howtos)):
             if kind == "yaml":
                 file = re.match(r"# (\S+)\n", text).group(1)
                 (folder / file).write_text(text)
