@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """tenon-sim --view in headless Chromium while a plan is executed in real time: the part moves on the page and ends
-where the truth file says; two look on at once; a simulation that is killed, stands still, or comes back is told from
+where the truth file says; two look on at once; a simulation that is killed or stands still is told from
 one that has ended. On a screen and a phone, light and dark, with WebGL and without.
 
   live_page.py BIN SOURCE PLANS [--pictures FOLDER]
@@ -32,13 +32,13 @@ ATTEMPTS = 3
 class Simulation:
     """tenon-sim with a view, used with `with`."""
 
-    def __init__(self, arguments, folder, *more, port=""):
+    def __init__(self, arguments, folder, *more):
         source = pathlib.Path(arguments.source)
         self.truth_file = folder / "truth.json"
         self.process = subprocess.Popen(
             [f"{arguments.bin}/tenon-sim", "--cell", source / f"hw/cells/{CELL}.yaml", "--task",
              source / f"planner/tasks/{TASK}.yaml", "--start", START, "--offset", f"x_m={OFFSET_M[0]},y_m={OFFSET_M[1]}",
-             "--can", "slcan-listen://127.0.0.1:0", "--json", self.truth_file, "--view", *([port] if port else []), *more],
+             "--can", "slcan-listen://127.0.0.1:0", "--json", self.truth_file, "--view", *more],
             stdout=subprocess.PIPE, text=True)
         lines = [self.process.stdout.readline() for _ in range(2)]
         if not lines[0].startswith("view: http://127.0.0.1:") or not lines[1].startswith("listening on "):
@@ -122,7 +122,7 @@ def hold_against_the_truth(browser, truth, first, seen, last, failures):
 
 
 def lose_it(arguments, folder, browser, failures):
-    """A simulation that stands still, goes on, is killed without a word, and another one in its place."""
+    """A simulation that stands still, goes on, and is killed without a word."""
     with Simulation(arguments, folder) as simulation:
         browser.open(simulation.url)
         browser.wait_for(f"{ROOT}.state === 'live' && {ROOT}.tool")
@@ -134,10 +134,6 @@ def lose_it(arguments, folder, browser, failures):
         browser.wait_for(f"{ROOT}.state === 'lost'")
         heading = browser.evaluate("document.querySelector('.now h2').textContent")
         failures.check(heading == "Connection lost", f"lost: says '{heading}'")
-        browser.evaluate("window.isTheOldPage = true")
-        port = simulation.url.rstrip("/").rsplit(":", 1)[1]
-    with Simulation(arguments, folder, port=port):
-        browser.wait_for(f"!window.isTheOldPage && document.documentElement && {ROOT}.state === 'live'")
 
 
 def look(arguments, folder, webgl, browser, failures):
