@@ -10,6 +10,7 @@
 
 #include "planner/belief/corners.h"
 #include "planner/belief/rollout_pool.h"
+#include "planner/planner.h"
 #include "planner/search/attractors.h"
 #include "planner/search/guide_way.h"
 #include "planner/search_moves.h"
@@ -56,6 +57,7 @@ class BlockRollout final : public Rollout {
       result.move.signature.bits = ContactSignature::bit(face, way_m[face] > 0.0 ? -1 : 1);
     }
     result.move.pose = seen_as(particle.environment, to);
+    result.move.travelled = displacement_between(particle.pose, result.move.pose);
     return result;
   }
   [[nodiscard]] bool in_collision(const Pose& tool) override {
@@ -158,6 +160,19 @@ TEST(TouchTurns, FollowedToTheLetterLeadToTheGoal) {
     EXPECT_LT(off.head<3>().norm(), 0.1e-3);
     EXPECT_LT(off.tail<3>().norm(), 1e-3);
   }
+}
+
+TEST(TouchTurns, AreFollowedByTheTruePhysicsWhereTheOtherHadAKnownStartWrong) {
+  const Turns turns(0.04);
+  const BlockRollout truth(0.04);
+  const BlockRollout larger(0.043);  // by more than the goal's tolerance
+  PlannerOptions options;
+  options.search_physics = &larger;
+  const PlanReport report = make_plan(turns.task, turns.start, truth, options);
+  EXPECT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+  ASSERT_FALSE(report.refusals.empty());
+  EXPECT_NE(report.refusals.front().find("followed by the true physics"), std::string::npos)
+      << report.refusals.front();
 }
 
 TEST(TouchTurns, LeaveASideThatIsNarrowerThanWhatIsUncertain) {
