@@ -87,7 +87,9 @@ set(TENON_MAY_USE_sim_evaluation_chain shared shared_system sim_evaluation sim_c
 # The mains compose. What is common to all of them:
 set(TENON_MAY_USE_any_main      shared shared_system Threads::Threads CLI11::CLI11
                                 nlohmann_json::nlohmann_json)
-set(TENON_MAY_USE_tenon-plan     planner planner_report planner_new_task sim_physics shared_config)
+# What an arm can do is told to the planner, behind its port, by the dry run and the kinematics under it.
+set(TENON_MAY_USE_tenon-plan     planner planner_report planner_new_task executor_dry_run sim_physics
+                                 shared_config)
 set(TENON_MAY_USE_tenon-inspect  planner planner_report executor_recorded sim_physics shared_config)
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
                                  executor_loop executor_telemetry hw_can hw_robot_arm hw_load shared_config)

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "executor/dry_run/cell_reach.h"
 #include "planner/cell_fit.h"
 #include "planner/check/task_check.h"
 #include "planner/main_plan_new_task.h"
@@ -198,8 +199,11 @@ int run(const Arguments& a) {
     options.progress = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }
   std::vector<std::string> adapted;
+  std::optional<executor::CellReach> reach;
   if (!a.cell.empty()) {
-    planner::CellFit fit = planner::fit_to_cell(task, load_cell(a.cell));
+    const Cell cell = load_cell(a.cell);
+    planner::CellFit fit = planner::fit_to_cell(task, cell);
+    options.reach = &reach.emplace(cell);
     task = std::move(fit.task);
     options.assumptions = fit.assumptions;
     adapted = std::move(fit.changes);

@@ -22,6 +22,8 @@ const char* to_string(PlanStatus status) {
       return "not certified";
     case PlanStatus::kMoveLimit:
       return "move limit";
+    case PlanStatus::kOutOfReach:
+      return "out of reach";
   }
   return "?";
 }

@@ -26,6 +26,7 @@ enum class PlanStatus : std::uint8_t {
   kExpansionLimit = 6,
   kNotCertified = 7,  ///< every path that was found was refuted, as often as the budget allows
   kMoveLimit = 8,     ///< as many moves as the budget allows have been simulated
+  kOutOfReach = 9,    ///< the cell's arm cannot hold the start or the goal
 };
 [[nodiscard]] const char* to_string(PlanStatus status);
 

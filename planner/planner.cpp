@@ -70,7 +70,8 @@ class Planning {
                    edges_of(task)),
         long_succ_(search_pool_, long_move(task, search_move(task, start, assumptions_)),
                    task.rollout_step_us, edges_of(task)),
-        judge_(task, start, {options.method, assumptions_, options.draws}, pool_, now_s_),
+        judge_(task, start, {options.method, assumptions_, options.draws, options.reach}, pool_,
+               now_s_),
         told_s_(began_s_) {
     report_.method = options.method;
     if (options.progress) {
@@ -84,6 +85,9 @@ class Planning {
   PlanReport run() {
     const std::string overlap = collision(task_, start_, pool_.front());
     if (!overlap.empty()) return ended(PlanStatus::kInCollision, overlap);
+    if (const std::string beyond = enter_reach(); !beyond.empty()) {
+      return ended(PlanStatus::kOutOfReach, beyond);
+    }
     const Belief start = belief_at_start();
     if (at_goal(summarise(start, task_), task_)) {
       return ended(PlanStatus::kAlreadyAtGoal, already_at_goal(start_));
@@ -107,6 +111,16 @@ class Planning {
   }
 
  private:
+  /// From here on what the arm cannot make does not exist. @return why there is no plan then
+  std::string enter_reach() {
+    if (options_.reach == nullptr) return {};
+    std::string why;
+    reach_ = reach_of_moves(task_, start_, assumptions_, *options_.reach, why);
+    if (!reach_) return why;
+    for (SuccessorEngine* succ : {&succ_, &true_succ_, &long_succ_}) succ->within(*reach_);
+    return {};
+  }
+
   void tell(const std::string& what) {
     if (!options_.progress) return;
     told_s_ = now_s_();
@@ -132,10 +146,17 @@ class Planning {
   /// Such a planner has nothing but its one particle.
   [[nodiscard]] bool is_baseline() const { return options_.method != PlanMethod::kMha; }
 
+  /// In the cell, by its arm where one is asked.
+  [[nodiscard]] Belief held(Belief belief) const {
+    Belief held = in_cell(std::move(belief), task_, assumptions_.contact_stiffness_Npm,
+                          assumptions_.latency_max_s);
+    if (reach_) held.arm = reach_->start();
+    return held;
+  }
+
   /// The method's particles, in the cell.
   [[nodiscard]] Belief belief_at_start() const {
-    return in_cell(start_belief(task_, start_, options_.method), task_,
-                   assumptions_.contact_stiffness_Npm, assumptions_.latency_max_s);
+    return held(start_belief(task_, start_, options_.method));
   }
 
   Attractors guides_from(const Belief& start) {
@@ -153,10 +174,7 @@ class Planning {
   }
 
   /// Several errors at their largest at once: what touches have to hold for that turn the part.
-  [[nodiscard]] Belief corners() const {
-    return in_cell(corner_belief(task_, start_), task_, assumptions_.contact_stiffness_Npm,
-                   assumptions_.latency_max_s);
-  }
+  [[nodiscard]] Belief corners() const { return held(corner_belief(task_, start_)); }
 
   std::vector<Guide> touched_in_turn() {
     const std::function<bool()> stop = [this] { return out_of_budget(); };
@@ -250,7 +268,9 @@ class Planning {
       status = PlanStatus::kNoAttractor;
     }
     const SearchLimits limits{task_.time_limit_s, options_.expansions_max, options_.moves_max};
-    return ended(status, no_path(status, report_, searched_->graph(), limits));
+    const std::string refused = reach_ ? reach_->refused_text() : "";
+    return ended(status, no_path(status, report_, searched_->graph(), limits) +
+                             (refused.empty() ? "" : "; " + refused));
   }
 
   void keep(JudgedPlan judged, std::vector<Vector6> path, const SearchResult& search) {
@@ -340,6 +360,7 @@ class Planning {
   SuccessorEngine true_succ_;
   SuccessorEngine long_succ_;
   PathJudge judge_;
+  std::optional<MoveReach> reach_;  ///< where an arm is asked
   std::optional<SearchedGraph> searched_;
   std::vector<Vector6> kept_path_;  ///< that the plan was made of
   std::size_t round_ = 0;

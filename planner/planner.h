@@ -20,6 +20,7 @@
 #include "planner/judge/plan_draft.h"
 #include "planner/judge/timed.h"
 #include "planner/plan_report.h"
+#include "shared/ports/arm_reach.h"
 #include "shared/ports/rollout.h"
 #include "shared/task/task.h"
 
@@ -36,6 +37,9 @@ struct PlannerOptions {
   /// What the cell is like that will execute the plan, see fit_to_cell(). Unset: its contact
   /// stiffness is the task's, and its latency at most 10 ms.
   std::optional<CellAssumptions> assumptions;
+  /// Of the arm that will execute the plan: what it cannot reach does not exist. Null: no arm is
+  /// asked.
+  const ArmReach* reach = nullptr;
   std::size_t draws = kDrawsMin;      ///< random starts of each validation
   std::size_t expansions_max = 5000;  ///< of one search
   std::size_t rounds_max = 100;       ///< searches, each without what the last ones had refuted

@@ -4,13 +4,46 @@
 #include <array>
 
 #include "planner/belief/primitives.h"
+#include "planner/judge/envelopes.h"
+#include "shared/task/spread.h"
 
 namespace tenon::planner {
 
+namespace {
+
+Plan one_step(const Task& task, const Start& start, const CellAssumptions& assumptions) {
+  const std::array<Vector6, 1> displacement = {step_primitives(task).front().displacement};
+  return draft_plan(task, start, assumptions, displacement);
+}
+
+}  // namespace
+
 MoveParameters search_move(const Task& task, const Start& start,
                            const CellAssumptions& assumptions) {
-  const std::array<Vector6, 1> displacement = {step_primitives(task).front().displacement};
-  return move_parameters(draft_plan(task, start, assumptions, displacement), 0);
+  return move_parameters(one_step(task, start, assumptions), 0);
+}
+
+std::optional<MoveReach> reach_of_moves(const Task& task, const Start& start,
+                                        const CellAssumptions& assumptions, const ArmReach& reach,
+                                        std::string& why) {
+  const Plan draft = one_step(task, start, assumptions);
+  const auto place = reach.start(draft, why);
+  if (!place) {
+    why = "the arm cannot hold start '" + start.name + "': " + why;
+    return std::nullopt;
+  }
+  if (!place->elsewhere(task.goal, why)) {
+    why = "the arm cannot hold the goal: " + why;
+    return std::nullopt;
+  }
+  const EnvelopeMargins margins = envelope_margins(draft, task);
+  MoveReach::Parameters parameters;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(task.coordinates, axis)) continue;
+    parameters.margins[axis] = axis < 3 ? margins.position_m : margins.angle_rad;
+  }
+  parameters.draws_over_particles = std::max(1.0, drawn_sigmas(task) / task.particle_sigmas);
+  return MoveReach(place, parameters);
 }
 
 MoveParameters long_move(const Task& task, MoveParameters move) {

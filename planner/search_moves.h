@@ -2,8 +2,13 @@
 // The parameters of the moves that the search simulates: those of a plan's step, as the file has
 // them, so that what is searched is what is written. Pure; any thread.
 
+#include <optional>
+#include <string>
+
+#include "planner/belief/move_reach.h"
 #include "planner/judge/plan_draft.h"
 #include "shared/motion/move_parameters.h"
+#include "shared/ports/arm_reach.h"
 #include "shared/task/task.h"
 
 namespace tenon::planner {
@@ -12,6 +17,13 @@ namespace tenon::planner {
 /// it.
 [[nodiscard]] MoveParameters search_move(const Task& task, const Start& start,
                                          const CellAssumptions& assumptions);
+
+/// What of the search's moves the arm can make.
+/// @param why set to one line where there is nothing to ask: the arm cannot hold the start, or the
+/// goal
+[[nodiscard]] std::optional<MoveReach> reach_of_moves(const Task& task, const Start& start,
+                                                      const CellAssumptions& assumptions,
+                                                      const ArmReach& reach, std::string& why);
 
 /// Likewise of the long moves that only look for attractors: as fast as the task allows, with the
 /// time that they need. @param move what search_move() says

@@ -1,17 +1,14 @@
 #include "executor/dry_run/dry_run.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 
+#include "executor/dry_run/movable_axes.h"
 #include "executor/dry_run/slow_down.h"
 #include "executor/dry_run/start_positions.h"
 #include "shared/base/text.h"
 
 namespace tenon::executor {
 namespace {
-
-// A tool motion that the joints reproduce this well is one that they can make.
-constexpr double kAxisError = 1e-6;
 
 // The plan walked through from one start position.
 struct Walk {
@@ -77,29 +74,6 @@ class Walker {
   std::vector<std::optional<StepReach>> reach_;
 };
 
-// Axes of the task frame along which the tool can move by itself.
-std::uint8_t movable_axes(const ToolKinematics& kinematics, const JointVector& joints) {
-  const SerialChain::Jacobian J = kinematics.jacobian(joints);
-  const Eigen::CompleteOrthogonalDecomposition<SerialChain::Jacobian> solver(J);
-  std::uint8_t axes = 0;
-  for (int axis = 0; axis < 6; ++axis) {
-    const Vector6 unit = Vector6::Unit(axis);
-    const Vector6 made = J * solver.solve(unit);
-    if ((made - unit).norm() < kAxisError) axes |= static_cast<std::uint8_t>(1U << axis);
-  }
-  return axes;
-}
-
-void check_axes(const Plan& plan, std::uint8_t movable, std::vector<std::string>& refusals) {
-  const auto check = [&](const char* what, std::uint8_t axes) {
-    if ((axes & ~movable) == 0) return;
-    refusals.push_back(format("%s axes %s: the robot can move the tool along %s only", what,
-                              axis_list(axes).c_str(), axis_list(movable).c_str()));
-  };
-  check("compliant", plan.compliance.compliant_axes);
-  check("moved", plan.coordinates);
-}
-
 Plan slowed_as(const Plan& plan, const std::vector<StepDemand>& steps) {
   std::vector<double> factors(plan.steps.size(), 1.0);
   for (const StepDemand& step : steps) factors[step.step] = step.slow_down;
@@ -118,7 +92,7 @@ DryRun dry_run(const Plan& plan, const Cell& cell) {
     return result;
   }
   result.start = starts.found.front();
-  check_axes(plan, movable_axes(kinematics, *result.start), result.refusals);
+  result.refusals = check_axes(plan, kinematics, *result.start);
   if (!result.refusals.empty()) return result;
 
   const Walker walker(plan, cell, kinematics);

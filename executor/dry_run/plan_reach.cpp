@@ -8,15 +8,14 @@
 namespace tenon::executor {
 namespace {
 
-void begin_from(std::optional<StepReach>& step, const StepReach::End& end,
-                ContactSignature contacts) {
+void begin_from(std::optional<StepReach>& step, const StepReach::End& end) {
   if (step) {
     step->begin.include(end.box);
   } else {
     step.emplace();
     step->begin = end.box;
   }
-  step->before.bits |= contacts.bits;
+  step->before.bits |= end.contacts.bits;
 }
 
 /// A travel along axes that are turned by up to so much (rad, about each), as the task frame has
@@ -51,30 +50,38 @@ Vector3 turned_rad(const Plan& plan, const Step& step, const ReachBox& begin) {
 
 }  // namespace
 
+StepReach reach_from(const ReachBox& begin, ContactSignature before, const Plan& plan,
+                     const Step& step) {
+  StepReach reach;
+  reach.begin = begin;
+  reach.before = before;
+  reach.swept = begin;
+  for (const OutcomeRule& rule : step.outcomes) {
+    if (rule.successor == kSuccessorFail) continue;
+    const Envelope& seen = rule.envelope;
+    StepReach::End end{rule.successor, {}, {}};
+    ReachBox travel{seen.travelled_min, seen.travelled_max};
+    if (!plan.check_envelopes) {
+      travel = {step.displacement.cwiseMin(0.0), step.displacement.cwiseMax(0.0)};
+    }
+    travel = as_turned(travel, turned_rad(plan, step, begin));
+    end.box = begin.moved(travel.low, travel.high);
+    end.contacts = plan.check_envelopes ? seen.possible : kAllContacts;
+    reach.swept.include(end.box);
+    reach.ends.push_back(end);
+  }
+  return reach;
+}
+
 // Successors only grow, so one pass meets every step after all of its predecessors.
 std::vector<std::optional<StepReach>> reach_of(const Plan& plan) {
   std::vector<std::optional<StepReach>> reach(plan.steps.size());
   if (!reach.empty()) reach[0].emplace();
   for (std::size_t i = 0; i < reach.size(); ++i) {
     if (!reach[i]) continue;
-    StepReach& here = *reach[i];
-    const Step& step = plan.steps[i];
-    here.swept = here.begin;
-    for (const OutcomeRule& rule : step.outcomes) {
-      if (rule.successor == kSuccessorFail) continue;
-      const Envelope& seen = rule.envelope;
-      StepReach::End end{rule.successor, {}};
-      ReachBox travel{seen.travelled_min, seen.travelled_max};
-      if (!plan.check_envelopes) {
-        travel = {step.displacement.cwiseMin(0.0), step.displacement.cwiseMax(0.0)};
-      }
-      travel = as_turned(travel, turned_rad(plan, step, here.begin));
-      end.box = here.begin.moved(travel.low, travel.high);
-      here.swept.include(end.box);
-      if (rule.successor < reach.size()) {
-        begin_from(reach[rule.successor], end, plan.check_envelopes ? seen.possible : kAllContacts);
-      }
-      here.ends.push_back(end);
+    reach[i] = reach_from(reach[i]->begin, reach[i]->before, plan, plan.steps[i]);
+    for (const StepReach::End& end : reach[i]->ends) {
+      if (end.successor < reach.size()) begin_from(reach[end.successor], end);
     }
   }
   return reach;

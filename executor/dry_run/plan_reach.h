@@ -44,11 +44,16 @@ struct StepReach {
   struct End {
     Successor successor = kSuccessorFail;
     ReachBox box;
+    ContactSignature contacts;  ///< that the tool may hold there
   };
   std::vector<End> ends;    ///< of every outcome that has a way on
   ReachBox swept;           ///< around begin and ends
   ContactSignature before;  ///< contacts that the tool may hold as the step begins
 };
+
+/// Of one step of a plan's kind. @param before contacts that the tool may hold as it begins
+[[nodiscard]] StepReach reach_from(const ReachBox& begin, ContactSignature before, const Plan& plan,
+                                   const Step& step);
 
 /// By step; empty where no way leads there. A plan without envelopes can end anywhere along its
 /// commands.

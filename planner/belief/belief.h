@@ -4,9 +4,11 @@
 // thread; nothing here simulates.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "shared/ports/arm_reach.h"
 #include "shared/ports/rollout.h"
 #include "shared/task/task.h"
 
@@ -14,6 +16,9 @@ namespace tenon::planner {
 
 struct Belief {
   std::vector<Particle> particles;  ///< never empty
+  /// Where the moves that led here may have brought the arm. Null where no arm is asked, and of a
+  /// belief that no moves led to.
+  std::shared_ptr<const ArmPlace> arm = nullptr;
 };
 
 /// What an angle weighs beside a way, the same in distances and in uncertainties. Ways weigh 1, so

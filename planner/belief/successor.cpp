@@ -36,17 +36,17 @@ SuccessorEngine::End SuccessorEngine::simulate(Rollout& rollout, const Job& job)
                      job.particle.environment};
   if (edges_ == Edges::kRefused && rests_at_edge(end, move.compliance.compliant_axes, rollout))
     return std::nullopt;
-  return end;
+  return Ended{end, result.move.travelled};
 }
 
 void SuccessorEngine::refuse(const Particle& particle, const Vector6& displacement) {
   memo_[key_of(particle, displacement)].reset();
 }
 
-std::vector<std::optional<Belief>> SuccessorEngine::successors(
+std::vector<const SuccessorEngine::End*> SuccessorEngine::ends_of(
     const Belief& belief, std::span<const Primitive> primitives) {
   std::vector<Job> jobs;
-  std::vector<const End*> ends;  // by primitive, then particle; nodes of a map stay where they are
+  std::vector<const End*> ends;  // nodes of a map stay where they are
   for (const Primitive& primitive : primitives) {
     for (const Particle& particle : belief.particles) {
       const auto [entry, fresh] = memo_.try_emplace(key_of(particle, primitive.displacement));
@@ -60,19 +60,39 @@ std::vector<std::optional<Belief>> SuccessorEngine::successors(
   counters_.rollouts += jobs.size();
   counters_.memo_hits += ends.size() - jobs.size();
   for (const Job& job : jobs) counters_.failures += job.end->has_value() ? 0U : 1U;
+  return ends;
+}
 
-  std::vector<std::optional<Belief>> successors;
-  auto end = ends.begin();
+bool SuccessorEngine::carry_arm(const ArmPlace& from, const Belief& belief,
+                                const Primitive& primitive, const End* const* ends,
+                                Belief& successor) {
+  ContactSignature held;
+  for (const Particle& particle : belief.particles) held.bits |= particle.signature.bits;
+  MoveReach::Travel travel{(*ends[0])->travelled, (*ends[0])->travelled};
+  bool touches = false;
+  for (std::size_t j = 0; j < belief.particles.size(); ++j) {
+    travel.include((*ends[j])->travelled);
+    touches = touches || (*ends[j])->particle.signature.count() > 0;
+  }
+  successor.arm = reach_->after(from, primitive.displacement, held, travel, touches);
+  return successor.arm != nullptr;
+}
+
+std::vector<std::optional<Belief>> SuccessorEngine::successors(
+    const Belief& belief, std::span<const Primitive> primitives) {
+  std::vector<std::optional<Belief>> successors(primitives.size());
+  const auto arm = reach_ != nullptr ? reach_->place_of(belief) : nullptr;
+  if (reach_ != nullptr && !arm) return successors;
+  const std::vector<const End*> ends = ends_of(belief, primitives);
   for (std::size_t i = 0; i < primitives.size(); ++i) {
-    std::optional<Belief> successor = Belief{};
-    for (std::size_t j = 0; j < belief.particles.size(); ++j, ++end) {
-      if (!(*end)->has_value()) {
-        successor.reset();
-      } else if (successor) {
-        successor->particles.push_back(***end);
-      }
+    const End* const* of_move = &ends[i * belief.particles.size()];
+    Belief successor;
+    for (std::size_t j = 0; j < belief.particles.size() && of_move[j]->has_value(); ++j) {
+      successor.particles.push_back((*of_move[j])->particle);
     }
-    successors.push_back(std::move(successor));
+    if (successor.particles.size() < belief.particles.size()) continue;
+    if (arm && !carry_arm(*arm, belief, primitives[i], of_move, successor)) continue;
+    successors[i] = std::move(successor);
   }
   return successors;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planner/belief/belief.h"
+#include "planner/belief/move_reach.h"
 #include "planner/belief/primitives.h"
 #include "planner/belief/rollout_pool.h"
 
@@ -31,9 +32,14 @@ class SuccessorEngine {
   SuccessorEngine(RolloutPool& pool, const MoveParameters& move, std::int64_t step_us,
                   Edges edges = Edges::kRefused);
 
+  /// From now on moves that the arm cannot make do not exist. @param reach outlives this
+  void within(MoveReach& reach) { reach_ = &reach; }
+  /// Null where no arm is asked.
+  [[nodiscard]] MoveReach* reach() const { return reach_; }
+
   /// One belief for each primitive, in order. Empty where a particle's rollout failed or timed out,
-  /// or left it resting at an edge: such a move does not exist. All rollouts that are missing run
-  /// as one batch.
+  /// or left it resting at an edge, or the arm cannot make it: such a move does not exist. All
+  /// rollouts that are missing run as one batch.
   [[nodiscard]] std::vector<std::optional<Belief>> successors(
       const Belief& belief, std::span<const Primitive> primitives);
 
@@ -45,7 +51,11 @@ class SuccessorEngine {
 
  private:
   using Key = std::vector<std::int64_t>;
-  using End = std::optional<Particle>;
+  struct Ended {
+    Particle particle;
+    Vector6 travelled;
+  };
+  using End = std::optional<Ended>;
   struct Job {
     Particle particle;
     Vector6 displacement;
@@ -55,10 +65,19 @@ class SuccessorEngine {
   [[nodiscard]] static Key key_of(const Particle& particle, const Vector6& displacement);
   [[nodiscard]] End simulate(Rollout& rollout, const Job& job) const;
 
+  /// One for each primitive, each the end of every particle; in that order.
+  [[nodiscard]] std::vector<const End*> ends_of(const Belief& belief,
+                                                std::span<const Primitive> primitives);
+  /// @return whether the arm can make the move; it is with the successor then
+  [[nodiscard]] bool carry_arm(const ArmPlace& from, const Belief& belief,
+                               const Primitive& primitive, const End* const* ends,
+                               Belief& successor);
+
   RolloutPool& pool_;
   MoveParameters move_;
   std::int64_t step_us_;
   Edges edges_;
+  MoveReach* reach_ = nullptr;
   std::map<Key, End> memo_;
   Counters counters_;
 };

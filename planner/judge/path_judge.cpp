@@ -1,6 +1,5 @@
 #include "planner/judge/path_judge.h"
 
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -76,6 +75,10 @@ Judgement PathJudge::at_speeds(Candidate&& candidate, std::vector<double>& dista
   }
   std::vector<Chain> good = good_chains(extremes.corners);
   append(good, good_chains(extremes.rim));
+  const Chain& known = certification.runs.front().chains.front();
+  if (const auto beyond = beyond_reach(with_envelopes(plan, task_, good), known)) {
+    return refuted(*beyond);
+  }
   std::vector<Draw> draws;
   if (!shorten(plan, good, distances_m)) {
     draws = drawn(plan, kSearchSeed);
@@ -90,7 +93,15 @@ Judgement PathJudge::at_speeds(Candidate&& candidate, std::vector<double>& dista
   append(good, chains_of(certification));
   std::variant<Plan, Refutation> judged = widened(plan, std::move(good));
   if (const auto* miss = std::get_if<Refutation>(&judged)) return refuted(*miss);
+  if (const auto beyond = beyond_reach(std::get<Plan>(judged), known)) return refuted(*beyond);
   return estimated(std::get<Plan>(std::move(judged)), std::move(certification), extremes);
+}
+
+std::optional<Refutation> PathJudge::beyond_reach(const Plan& plan, const Chain& known) const {
+  if (parameters_.reach == nullptr) return std::nullopt;
+  const auto refusal = parameters_.reach->refusal(plan);
+  if (!refusal) return std::nullopt;
+  return Refutation{known, refusal->step, "out of the arm's reach: " + refusal->why};
 }
 
 std::variant<Plan, Refutation> PathJudge::widened(const Plan& plan, std::vector<Chain> good) {

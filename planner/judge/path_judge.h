@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "planner/judge/timed.h"
 #include "planner/judge/validation.h"
 #include "shared/plan/plan.h"
+#include "shared/ports/arm_reach.h"
 #include "shared/task/task.h"
 
 namespace tenon::planner {
@@ -48,6 +50,8 @@ class PathJudge {
     PlanMethod method = PlanMethod::kMha;
     CellAssumptions assumptions;
     std::size_t draws = kDrawsMin;  ///< of each validation
+    /// Where not null: a plan that this arm cannot execute is refuted.
+    const ArmReach* reach = nullptr;
   };
 
   /// task, start and pool must outlive this.
@@ -80,6 +84,8 @@ class PathJudge {
   /// Envelopes around the chains, widened to more draws until all of a batch stay within them: what
   /// one start in a hundred does is no reason to stop.
   [[nodiscard]] std::variant<Plan, Refutation> widened(const Plan& plan, std::vector<Chain> good);
+  /// Of a plan with envelopes that the arm cannot execute. @param known one of its chains
+  [[nodiscard]] std::optional<Refutation> beyond_reach(const Plan& plan, const Chain& known) const;
   [[nodiscard]] Judgement estimated(Plan plan, Certification certification,
                                     const Extremes& extremes);
   [[nodiscard]] Certification certified(const Plan& plan);

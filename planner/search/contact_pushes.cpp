@@ -158,10 +158,9 @@ void ContactPushes::against_faces(const Spread& from, KnownContacts& known) {
 /// there.
 Belief ContactPushes::opposite(const TouchPlace& side, const Primitive& push,
                                const Eigen::AlignedBox3d& part, const Spread& from) const {
-  FreeLegs legs(task_, whole_.seed.mean, rollout_);
   const PartBefore before{part, from.seed, axis_of(push), sign_of(push)};
   for (const Pose& place : places_before(side, before, task_)) {
-    if (out_of_reach(whole_.seed.mean, place) || !legs.to(from.seed, place)) continue;
+    if (out_of_reach(whole_.seed.mean, place) || !legs_lead(from, place)) continue;
     Belief belief = about(place, from);
     if (!belief.particles.empty()) return belief;
   }
@@ -169,11 +168,18 @@ Belief ContactPushes::opposite(const TouchPlace& side, const Primitive& push,
   return out_of_reach(whole_.seed.mean, middle) ? Belief{} : about(middle, from);
 }
 
+/// From where the plan begins.
+bool ContactPushes::legs_lead(const Spread& from, const Pose& to) const {
+  return FreeLegs(task_, whole_.seed.mean, rollout_, succ_.reach())
+      .to(from.seed, to, whole_.start.arm.get())
+      .has_value();
+}
+
 /// Adds the contacts that each of these pushes makes.
 void ContactPushes::push_once(const Belief& belief, const std::vector<Primitive>& pushes,
                               const Spread& from, KnownContacts& known) {
   const Pose via = summarise(belief, task_).mean;
-  const bool in_legs = FreeLegs(task_, whole_.seed.mean, rollout_).to(from.seed, via).has_value();
+  const bool in_legs = legs_lead(from, via);
   for (Pushed& pushed : together(belief, pushes)) {
     ContactAttractor& contact = pushed.contact;
     contact.via = via;

@@ -67,6 +67,7 @@ class ContactPushes {
   void against_faces(const Spread& from, KnownContacts& known);
   [[nodiscard]] Belief opposite(const TouchPlace& side, const Primitive& push,
                                 const Eigen::AlignedBox3d& part, const Spread& from) const;
+  [[nodiscard]] bool legs_lead(const Spread& from, const Pose& to) const;
   [[nodiscard]] Belief drawn(Random& random) const;
   void push_once(const Belief& belief, const std::vector<Primitive>& pushes, const Spread& from,
                  KnownContacts& known);

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
+
+#include "planner/belief/primitives.h"
 
 namespace tenon::planner {
 namespace {
@@ -27,7 +30,8 @@ double length(const std::vector<Vector6>& legs) {
 
 }  // namespace
 
-std::optional<std::vector<Vector6>> FreeLegs::to(const BeliefSummary& belief, const Pose& place) {
+std::optional<std::vector<Vector6>> FreeLegs::to(const BeliefSummary& belief, const Pose& place,
+                                                 const ArmPlace* arm) {
   Vector6 way = displacement_between(belief.mean, place);
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(task_.coordinates, axis)) way[axis] = 0.0;
@@ -39,7 +43,7 @@ std::optional<std::vector<Vector6>> FreeLegs::to(const BeliefSummary& belief, co
     const Vector3 half_m = belief.spread.head<3>() + aside_m + Vector3::Constant(margin_m);
     if (!free_at(end, half_m)) continue;  // where all of them lead
     for (const Legs& legs : all) {
-      if (free(belief, legs, half_m)) return legs;
+      if (free(belief, legs, half_m) && in_reach(belief, legs, arm)) return legs;
     }
   }
   return std::nullopt;
@@ -84,6 +88,20 @@ bool FreeLegs::free(const BeliefSummary& belief, const Legs& legs, const Vector3
     for (double i = 1.0; i <= strides; i += 1.0) {
       if (!free_at(displaced(at, i / strides * leg), half_m)) return false;
     }
+    at = displaced(at, leg);
+  }
+  return true;
+}
+
+/// A leg through free space is gone to its end.
+bool FreeLegs::in_reach(const BeliefSummary& belief, const Legs& legs, const ArmPlace* arm) {
+  if (reach_ == nullptr || arm == nullptr) return true;
+  Pose at = belief.mean;
+  std::shared_ptr<const ArmPlace> place;
+  for (const Vector6& leg : legs) {
+    const Vector6 told = in_move_axes(task_, at, leg);
+    place = reach_->after(place ? *place : *arm, told, {}, {told, told}, false);
+    if (!place) return false;
     at = displaced(at, leg);
   }
   return true;

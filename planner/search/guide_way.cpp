@@ -38,7 +38,7 @@ class Walk {
         part_(around(task.held)),
         clear_(clear),
         succ_(succ),
-        legs_(task, clear, rollout),
+        legs_(task, clear, rollout, succ.reach()),
         belief_(start) {}
 
   [[nodiscard]] BeliefSummary here() const { return summarise(belief_, task_); }
@@ -120,12 +120,12 @@ class Walk {
 
   /// Through free space; where nothing leads there from here, back on the way here until it does.
   bool go(const Pose& place) {
-    auto legs = legs_.to(here(), place);
+    auto legs = legs_.to(here(), place, belief_.arm.get());
     while (!legs && !waypoints_.empty()) {
       const Pose before = waypoints_.back();
       waypoints_.pop_back();
       if (!move_to(before)) return false;
-      legs = legs_.to(here(), place);
+      legs = legs_.to(here(), place, belief_.arm.get());
     }
     if (!legs) return false;
     waypoints_.push_back(here().mean);

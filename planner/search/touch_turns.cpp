@@ -209,7 +209,9 @@ bool TouchTurns::in_legs(const Turn& turn) {
   BeliefSummary clear;
   clear.mean = clear_;
   clear.spread = turn.before;
-  return FreeLegs(task_, clear_, rollout_).to(clear, *turn.contacts.back().via).has_value();
+  return FreeLegs(task_, clear_, rollout_, succ_.reach())
+      .to(clear, *turn.contacts.back().via, start_.arm.get())
+      .has_value();
 }
 
 }  // namespace tenon::planner

@@ -45,6 +45,13 @@ TEST_P(ShippedCell, BringsTheBoxToItsGoalWhereverTheDemosSeedsPutTheTable) {
   }
 }
 
+// By the walls that a plan for no cell in particular touches from there, the executor refuses it:
+// 0.05 mm beyond the arm's continuous reach.
+TEST(ShippedArmCell, ExecutesThePlanThatWasMadeForItAtTheRimOfItsReach) {
+  const Cell cell = shipped_cell("csp6");
+  EXPECT_TRUE(executor::dry_run(planned_box(cell, "2").plan, cell).refusals.empty());
+}
+
 TEST(ShippedPegCell, ReachesTheStartOfTheFinePegWhichTheTablesCellDoesNot) {
   const Task task = load_task(in_tree("planner/tasks/peg_in_hole_2d_fine.yaml"));
   const Pose& start = task.starts.front().pose;
