@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 
 namespace tenon::executor {
@@ -275,6 +276,12 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
   return "?";
 }
 
+std::string travel_outside(const Transition& t) {
+  return format("travelled %.4g %s along %s where validation saw %.4g to %.4g",
+                shown(t.travelled, t.index), t.index < 3 ? "mm" : "deg", axis_name(t.index),
+                shown(t.travelled_min, t.index), shown(t.travelled_max, t.index));
+}
+
 }  // namespace
 
 std::string describe(const Transition& transition) {
@@ -285,7 +292,7 @@ std::string describe(const Transition& transition) {
     case Deviation::kUnexpectedOutcome:
       return "the plan has no way on from this outcome";
     case Deviation::kTravelOutside:
-      return format("travelled along %s outside what validation saw", axis_name(transition.index));
+      return travel_outside(transition);
     case Deviation::kContactMissing:
       return "contact " + tenon::to_string(ContactSignature{bit}) +
              " is missing, validation always had it";

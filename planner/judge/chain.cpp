@@ -20,9 +20,11 @@ std::string describe(const Transition& transition, const GuardedMove::Result& mo
     case Deviation::kUnexpectedOutcome:
       return outcome + " has no successor";
     case Deviation::kTravelOutside:
-      return outcome + format(", travelled %.2f (mm, deg) in %s, outside its envelope",
-                              shown(move.travelled[transition.index], transition.index),
-                              axis_name(transition.index));
+      return outcome + format(", travelled %.2f %s along %s, its envelope is %.2f to %.2f",
+                              shown(transition.travelled, transition.index),
+                              transition.index < 3 ? "mm" : "deg", axis_name(transition.index),
+                              shown(transition.travelled_min, transition.index),
+                              shown(transition.travelled_max, transition.index));
     case Deviation::kContactMissing:
       return outcome + ", contact " + bit_name(transition.index) + " is missing";
     case Deviation::kContactUnforeseen:

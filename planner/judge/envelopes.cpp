@@ -67,11 +67,13 @@ EnvelopeMargins envelope_margins(const Plan& plan, const Task& task) {
     const bool sensed = ((set.sensed_axes & plan.compliance.compliant_axes) >> 3) != 0;
     const double keep_Nm = sensed ? set.thresholds.torque_keep_Nm : 0.0;
     const double friction_rad = task.friction.high * keep_Nm / plan.compliance.stiffness_Nmpr;
+    // A torque that counts for none turns a pressed tool as far as the spring gives.
+    const double give_rad = set.thresholds.torque_off_Nm / plan.compliance.stiffness_Nmpr;
     margins.position_m = std::max(
         margins.position_m, kSensor_m + set.speeds.contact_mps * plan.latency_max_s + friction_m);
     margins.angle_rad =
-        std::max(margins.angle_rad,
-                 kSensor_rad + set.speeds.contact_radps * plan.latency_max_s + friction_rad);
+        std::max(margins.angle_rad, kSensor_rad + set.speeds.contact_radps * plan.latency_max_s +
+                                        give_rad + friction_rad);
   }
   return margins;
 }

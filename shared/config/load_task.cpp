@@ -26,9 +26,8 @@ using config::Value;
 
 constexpr std::size_t kStartsMax = 200;
 constexpr double kBoundOverSigma = std::numbers::sqrt3;  // of a uniform distribution
-constexpr std::uint8_t kTranslations = 0b000111;
 constexpr std::uint8_t kRotations = 0b111000;
-constexpr std::uint8_t kAllAxes = kTranslations | kRotations;
+constexpr std::uint8_t kAllAxes = 0b111111;
 
 std::uint32_t microseconds(double time_s) {
   return static_cast<std::uint32_t>(std::llround(1e6 * time_s));
@@ -150,7 +149,8 @@ SpeedLimits read_speeds(const Value& value) {
   return v;
 }
 
-/// Thresholds, debounce and limits; refused where they break the rules of a guarded move.
+/// Thresholds, debounce and limits; refused where they break the rules of a guarded move. After
+/// read_compliance().
 void read_contact(const Value& value, Task& task) {
   const Map map(value,
                 {"force_on_N", "force_keep_N", "force_off_N", "torque_on_Nm", "torque_keep_Nm",
@@ -161,6 +161,8 @@ void read_contact(const Value& value, Task& task) {
   t.force_on_N = map.number("force_on_N", kForce);
   t.force_keep_N = map.number("force_keep_N", kForce);
   t.force_off_N = map.number("force_off_N", kForce);
+  const unsigned rotations = task.compliance.compliant_axes & kRotations;
+  if (rotations != 0) t = with_press_torques(t);
   map.optional_number("torque_on_Nm", kTorque, t.torque_on_Nm);
   map.optional_number("torque_keep_Nm", kTorque, t.torque_keep_Nm);
   map.optional_number("torque_off_Nm", kTorque, t.torque_off_Nm);
@@ -173,8 +175,9 @@ void read_contact(const Value& value, Task& task) {
 
   ContactConditions conditions;
   conditions.friction_max = task.friction.high;
-  // A torque that nobody gave a threshold for is not sensed; see read_compliance().
-  task.motion.sensed_axes = map.find("torque_on_Nm") ? kAllAxes : kTranslations;
+  // A torque that nobody gave a threshold for is not sensed; what does not rotate feels none.
+  task.motion.sensed_axes =
+      map.find("torque_on_Nm") ? kAllAxes : static_cast<std::uint8_t>(kAllAxes & ~rotations);
   if (const auto rule =
           broken_rule(t, task.force_limit_N, task.motion.speeds.acceleration_mps2, conditions)) {
     value.refuse(*rule);
@@ -191,8 +194,6 @@ void read_compliance(const Value& value, Task& task) {
     map.at("axes").refuse("lacks the search coordinate " + std::string(axis_name(axis)) +
                           ": a rigid axis feels no contact");
   }
-  // What does not rotate feels no torque anyway.
-  task.motion.sensed_axes |= static_cast<std::uint8_t>(~c.compliant_axes & kRotations);
   task.motion.carried_axes = (task.coordinates & kRotations) != 0;
   c.mass_kg = map.number("mass_kg", positive_to(1e3));
   c.damping_Nspm = map.number("damping_Nspm", positive_to(1e6));
@@ -305,8 +306,8 @@ Task load_task(const std::filesystem::path& name) {
   }
   task.motion.speeds = read_speeds(map.at("speeds"));
   read_physics(map.at("physics"), task);
-  read_contact(map.at("contact"), task);
   read_compliance(map.at("compliance"), task);
+  read_contact(map.at("contact"), task);
   if (const auto search = map.find("search")) read_search(*search, task);
   check_time_for_a_step(primitives ? *primitives : map.at("contact"), task);
   return task;

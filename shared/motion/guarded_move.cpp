@@ -265,13 +265,12 @@ void GuardedMove::settle(const Input& input) {
   const bool sure = sampled && pressed_long && at_rest && detector_.weak().bits == 0;
   if (rotates_ && since_ns >= kSettlingMax_ns) detector_.drop_weak();
   if (!sure && since_ns < (rotates_ ? kAligningMax_ns : kSettlingMax_ns)) return;
-  if (aligning_) {
-    aligning_ = false;
-    settling_since_ns_ = input.time_ns;
-    settling_samples_ = 0;
-    return;
-  }
-  finish(input);
+  if (!aligning_) return finish(input);
+  // With less force the spring would turn the tool back from what has turned it.
+  aligning_ = false;
+  setpoint_.pose.orientation = rest_setpoint(input.pose, pressing_, parameters_).orientation;
+  settling_since_ns_ = input.time_ns;
+  settling_samples_ = 0;
 }
 
 void GuardedMove::finish(const Input& input) {
@@ -294,10 +293,12 @@ void GuardedMove::creep(const Pose& pose) {
   const bool sure = aligning_ && detector_.weak().bits == 0;
   const double force_N = sure ? kProbeOverOn * t.force_on_N : t.force_keep_N;
   const Pose follow = pressed(pose, pressing_, parameters_.compliance, force_N, t.torque_keep_Nm);
+  const double give_rad = t.torque_off_Nm / parameters_.compliance.stiffness_Nmpr;
   Vector6 way = displacement_between(setpoint_.pose, follow);
   for (int axis = 0; axis < 6; ++axis) {
     const bool held = pressing_.sign(axis) != 0;
     if (!yields(parameters_.compliance, axis) || (axis < 3 && !held)) way[axis] = 0.0;
+    if (axis >= 3 && !held) way[axis] -= std::clamp(way[axis], -give_rad, give_rad);
   }
   const double step = step_s();
   setpoint_.pose = displaced(setpoint_.pose, step / (step + kCreep_s) * way);

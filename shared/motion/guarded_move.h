@@ -20,7 +20,9 @@
 //
 // A tool that can rotate is turned by what it is pressed against. After a contact it presses with
 // the force of a probe until it is at rest, its setpoint creeping after the pose, which is what
-// lets a part align flat; only then it rests with the keep force.
+// lets a part align flat; only then it rests with the keep force. Torque below torque_off_Nm turns
+// it by the spring's give alone: without that bound whatever the sensor is wrong by would turn it
+// for as long as it presses.
 //
 // The plant between setpoint and pose (an ODE rollout, or an admittance law in front of drives)
 // realises Compliance; the move itself never looks at the spring's own force. It bounds what the

@@ -32,6 +32,7 @@ struct ContactThresholds {
   double force_off_N = 1.5;
   double torque_on_Nm = 0.6;
   double torque_keep_Nm = 0.3;
+  /// Also the least that turns a tool for good which presses against something.
   double torque_off_Nm = 0.15;
   /// A bit changes after fresh samples have agreed for this long.
   std::uint32_t debounce_us = 6000;
@@ -42,6 +43,18 @@ struct ContactThresholds {
 /// While a bit is being confirmed the tool presses with this multiple of the on-threshold: a real
 /// contact answers with that force whatever the impact left, and nothing else does.
 inline constexpr double kProbeOverOn = 1.5;
+
+/// A press whose line of action passes the tool tip this near is taken for one through it.
+inline constexpr double kPressLever_m = 2e-3;
+
+/// Torque thresholds for tools that are turned by what they press against and whose sensor nobody
+/// knows: off is the press of a probe at kPressLever_m, keep twice and on four times that.
+[[nodiscard]] constexpr ContactThresholds with_press_torques(ContactThresholds thresholds) {
+  thresholds.torque_off_Nm = kProbeOverOn * thresholds.force_on_N * kPressLever_m;
+  thresholds.torque_keep_Nm = 2.0 * thresholds.torque_off_Nm;
+  thresholds.torque_on_Nm = 4.0 * thresholds.torque_off_Nm;
+  return thresholds;
+}
 
 /// Limits of the command along the straight path of a move.
 struct SpeedLimits {

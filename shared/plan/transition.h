@@ -21,6 +21,10 @@ struct Transition {
   Deviation deviation = Deviation::kNone;
   /// For kTravelOutside: the axis, 0..5. For the contact deviations: the bit, 0..11.
   int index = -1;
+  /// For kTravelOutside: how far it went along the axis, and from where to where it may, m or rad.
+  double travelled = 0.0;
+  double travelled_min = 0.0;
+  double travelled_max = 0.0;
 };
 
 /// Real-time. A deviation always leads to kSuccessorFail.

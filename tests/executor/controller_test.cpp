@@ -69,7 +69,7 @@ TEST(Controller, ATravelOutsideTheEnvelopeFailsThePlanByNamingTheAxis) {
   EXPECT_EQ(bench.controller.ending().reason, EndReason::kPlanFailed);
   EXPECT_EQ(bench.controller.ending().index, 0);
   EXPECT_EQ(bench.controller.ending().transition.deviation, Deviation::kTravelOutside);
-  EXPECT_EQ(bench.ending(), "step 0: travelled along x outside what validation saw");
+  EXPECT_EQ(bench.ending(), "step 0: travelled 30.07 mm along x where validation saw 35 to 52");
   EXPECT_EQ(bench.controller.runner().report_count(), 1U);
   EXPECT_EQ(bench.arm.state(), ArmState::kDisabled);
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "shared/motion/admittance.h"
 #include "shared/ports/rollout.h"
 #include "shared/task/task.h"
 #include "sim/physics/rollout/ode_rollout.h"
@@ -16,11 +17,11 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::int64_t kStep_us = 2000;
 
-/// A box of 0.1 m before a wall at +x that is turned about z; only x, y and the turn yield.
+/// A box before a wall at +x that is turned about z; only x, y and the turn yield.
 class Wall {
  public:
-  Wall() {
-    task_.held = {{"part", Shape::Kind::kBox, {0.1, 0.1, 0.1}, {}}};
+  explicit Wall(double side_m = 0.1) {
+    task_.held = {{"part", Shape::Kind::kBox, {side_m, side_m, 0.1}, {}}};
     task_.environment = {
         {"wall", Shape::Kind::kBox, {0.1, 2.0, 0.1}, {{0.2, 0.0, 0.01}, {1, 0, 0, 0}}}};
     move_.compliance.compliant_axes = 0b100011;
@@ -105,6 +106,11 @@ TEST(Aligning, AMoveInCarriedAxesGoesAlongWhatTheToolHasFound) {
   EXPECT_GT((other_m - way_m).norm(), 1e-3);
 }
 
+template <typename Vector>
+bool same_bits(const Vector& a, const Vector& b) {
+  return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
+
 TEST(Aligning, ARecordedMoveInCarriedAxesReplaysBitForBit) {
   Wall wall;
   MoveParameters push = wall.push();
@@ -116,11 +122,66 @@ TEST(Aligning, ARecordedMoveInCarriedAxesReplaysBitForBit) {
   GuardedMove again(push, {});
   for (const TraceSample& sample : trace) {
     const GuardedMove::Output output = again.update(sample.input);
-    ASSERT_EQ(std::memcmp(&output.setpoint, &sample.setpoint, sizeof output.setpoint), 0);
+    ASSERT_TRUE(same_bits(output.setpoint.pose.position_m, sample.setpoint.pose.position_m));
+    ASSERT_TRUE(same_bits(output.setpoint.pose.orientation.coeffs(),
+                          sample.setpoint.pose.orientation.coeffs()));
+    ASSERT_TRUE(same_bits(output.setpoint.velocity, sample.setpoint.velocity));
+    ASSERT_TRUE(same_bits(output.setpoint.acceleration, sample.setpoint.acceleration));
   }
   ASSERT_TRUE(again.result().has_value());
   EXPECT_EQ(again.result()->outcome, result.move.outcome);
   EXPECT_EQ(again.result()->duration_ns, result.move.duration_ns);
+}
+
+/// Presses something that cannot turn it. @param torque_Nm what the sensor is off by about z at the
+/// press of a probe, in proportion at others
+GuardedMove::Result pressed_with_torque_off_by(double torque_Nm) {
+  MoveParameters push;
+  push.compliance.compliant_axes = 0b100001;
+  push.compliance.stiffness_Nmpr = 5.0;
+  push.compliance.damping_Nmspr = 1.0;
+  push.sensed_axes = 0b011111;
+  push.thresholds = with_press_torques(push.thresholds);
+  push.timeout_us = 30'000'000;
+  push.displacement[0] = 0.02;
+  constexpr double kWall_m = 0.01;
+  constexpr double kWall_Npm = 2e4;
+  const double probe_N = kProbeOverOn * push.thresholds.force_on_N;
+  GuardedMove move(push, {});
+  Admittance tool(push.compliance);
+  GuardedMove::Input input;
+  for (input.time_ns = 0; !move.result(); input.time_ns += 1000 * kStep_us) {
+    input.pose = tool.state().pose;
+    const double press_N = kWall_Npm * std::max(0.0, input.pose.position_m.x() - kWall_m);
+    input.wrench << -press_N, 0.0, 0.0, 0.0, 0.0, torque_Nm * press_N / probe_N;
+    tool.update(move.update(input).setpoint, input.wrench, 1e-6 * kStep_us);
+  }
+  return *move.result();
+}
+
+TEST(Aligning, WhatASensorIsWrongByTurnsAPressedToolByTheSpringsGiveAlone) {
+  const ContactThresholds t = with_press_torques({});
+  const double give_rad = t.torque_off_Nm / 5.0;
+  for (const double share : {-0.95, -0.3, 0.0, 0.3, 0.95}) {
+    const GuardedMove::Result result = pressed_with_torque_off_by(share * t.torque_off_Nm);
+    EXPECT_EQ(result.outcome, Outcome::kContact);
+    EXPECT_LE(std::abs(turn_of(result.pose)), 2.0 * give_rad) << share;
+    EXPECT_LT(result.duration_ns, 3'000'000'000) << share;
+  }
+  const GuardedMove::Result turned = pressed_with_torque_off_by(2.0 * t.torque_off_Nm);
+  EXPECT_GT(std::abs(turn_of(turned.pose)), 10.0 * give_rad);
+}
+
+TEST(Aligning, AFaceOfTwentyMillimetresIsFoundWithPressTorques) {
+  for (const double turned_deg : {-5.0, -1.0, 0.3, 5.0}) {
+    Wall wall(0.02);
+    MoveParameters push = wall.push();
+    push.thresholds = with_press_torques(push.thresholds);
+    const RolloutResult result = wall.run(wall.before(turned_deg * kDegree, 0.6), push);
+    ASSERT_TRUE(result.valid) << result.failure;
+    EXPECT_EQ(to_string(result.move.signature), "-x");
+    EXPECT_NEAR(turn_of(result.move.pose), turned_deg * kDegree, 0.1 * kDegree) << turned_deg;
+  }
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ TEST(Planner, CertificationRejectsAPlanWithAChangedDisplacement) {
   const Certification refused = certify(encode_plan(changed), task, pool);
   ASSERT_FALSE(refused.holds());
   EXPECT_EQ(refused.refuting()->disagreement.step, changed.steps.size() - 1);
-  EXPECT_NE(refused.refuting()->disagreement.why.find("outside its envelope"), std::string::npos);
+  EXPECT_NE(refused.refuting()->disagreement.why.find("its envelope is"), std::string::npos);
   // Without envelopes the chain simply ends beside the goal.
   changed.check_envelopes = false;
   const Certification beside = certify(encode_plan(changed), task, pool);
