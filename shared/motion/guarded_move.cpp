@@ -9,11 +9,10 @@
 namespace tenon {
 namespace {
 
-// At rest: slower than this over the whole window. A window this long sees 0.2 mm/s through encoder
-// steps of a micrometre.
+// At rest: slower than this over the whole window that speeds are judged by, which is long enough
+// to see 0.2 mm/s through encoder steps of a micrometre.
 constexpr double kRestSpeed_mps = 0.2e-3;
 constexpr double kRestSpeed_radps = 2e-3;
-constexpr std::int64_t kRestWindow_ns = 20'000'000;
 constexpr std::int64_t kSettlingMax_ns = 500'000'000;
 // A tool that is being turned takes longer; who presses it has no end of his own to wait for.
 constexpr std::int64_t kAligningMax_ns = 10'000'000'000;
@@ -22,6 +21,7 @@ constexpr double kCreep_s = 0.05;
 constexpr std::int64_t kCreepIn_ns = 200'000'000;  // until nearly all of the force acts
 constexpr int kSettlingExtraSamples = 2;
 // Blocked: the force limit has been reached and the tool slower than this for that long.
+constexpr int kTranslations = 3;  // axes, and after their bits those of rotations
 constexpr double kBlockedSpeed_mps = 1e-3;
 constexpr double kBlockedSpeed_radps = 1e-2;
 constexpr std::int64_t kBlocked_ns = 50'000'000;
@@ -51,8 +51,10 @@ Pose pressed(const Pose& pose, ContactSignature signature, const Compliance& com
 
 }  // namespace
 
-GuardedMove::GuardedMove(const MoveParameters& parameters, ContactSignature signature)
+GuardedMove::GuardedMove(const MoveParameters& parameters, ContactSignature signature,
+                         const std::optional<Eigen::Quaterniond>& held)
     : parameters_(parameters),
+      held_(held),
       rotates_(parameters.compliance.compliant_axes >> 3 != 0),
       detector_(parameters.thresholds,
                 parameters.compliance.compliant_axes & parameters.sensed_axes, signature),
@@ -81,7 +83,10 @@ GuardedMove::Output GuardedMove::update(const Input& input) {
     advance(input);
     return {setpoint_, phase_};
   }
-  if (!axes_) axes_ = input.pose.orientation * parameters_.carried_from->conjugate();
+  if (!axes_) {
+    axes_ = input.pose.orientation * parameters_.carried_from->conjugate();
+    if (held_) held_ = axes_->conjugate() * *held_;
+  }
   const bool was_done = result_.has_value();
   advance(in_own_axes(input));
   if (result_ && !was_done) result_->pose = input.pose;
@@ -106,7 +111,7 @@ GuardedMove::Setpoint GuardedMove::in_task_axes(const Setpoint& own) const {
 
 void GuardedMove::advance(const Input& input) {
   if (!started_) start(input);
-  remember(input);
+  recent_.add(input.time_ns, input.pose);
   if (input.wrench_fresh) {
     detector_.update(input.time_ns, input.wrench, kept());
     watch_resistance(input.wrench);
@@ -133,6 +138,7 @@ void GuardedMove::start(const Input& input) {
   // What the move leaves is not pressed any more, so that it travels what it was told.
   rest_ = rest_setpoint(input.pose, {static_cast<std::uint16_t>(initial_.bits & ~leaving_.bits)},
                         parameters_);
+  if (held_ && rotates_) rest_.orientation = *held_;
   setpoint_.pose = rest_;
   plan_path(input.time_ns, 0.0);
 }
@@ -174,7 +180,7 @@ void GuardedMove::move(const Input& input) {
   setpoint_.pose = clamped(displaced(rest_, along_ * path), input.pose, limited);
   // The means since the last update, not the profile's own: a plant that takes steps of this length
   // follows them to the pose, and not beside it by half a step of its speed.
-  if (const double step = step_s(); step > 0.0) {
+  if (const double step = recent_.step_s(); step > 0.0) {
     const Vector6 velocity = along_ * ((path - path_) / step);
     setpoint_.acceleration = (velocity - path_velocity_) / step;
     setpoint_.velocity = path_velocity_ = velocity;
@@ -182,7 +188,7 @@ void GuardedMove::move(const Input& input) {
   }
   path_ = path;
 
-  if (limited == 0 || !slower_than(kBlockedSpeed_mps, kBlockedSpeed_radps)) {
+  if (limited == 0 || !recent_.slower_than(kBlockedSpeed_mps, kBlockedSpeed_radps)) {
     pressed_since_ns_ = -1;
   } else if (pressed_since_ns_ < 0) {
     pressed_since_ns_ = input.time_ns;
@@ -219,10 +225,10 @@ void GuardedMove::probe(const Input& input) {
   if (input.time_ns - first_.time_ns >= std::int64_t{1000} * parameters_.timeout_us) {
     return enter_settling(input, Outcome::kTimeout);
   }
-  free_tool_.update(setpoint_, Vector6::Zero(), step_s());
+  free_tool_.update(setpoint_, Vector6::Zero(), recent_.step_s());
   // What presses has come to rest on less than a contact takes, friction for one: no more comes.
   const bool faded = watched(detector_.fading()) == watched(detector_.candidates());
-  if (faded && slower_than(kRestSpeed_mps, kRestSpeed_radps)) detector_.drop_fading();
+  if (faded && recent_.slower_than(kRestSpeed_mps, kRestSpeed_radps)) detector_.drop_fading();
   if (input.wrench_fresh && watched(detector_.candidates()).bits == 0) resume(input);
 }
 
@@ -244,23 +250,32 @@ void GuardedMove::enter_settling(const Input& input, Outcome outcome) {
   settling_samples_ = 0;
   pressing_ = detector_.signature();
   aligning_ = rotates_ && outcome == Outcome::kContact;
-  setpoint_.pose = rest_setpoint(input.pose, pressing_, parameters_);
+  setpoint_.pose = resting(input.pose, pressing_);
   setpoint_.velocity.setZero();
   setpoint_.acceleration.setZero();
+}
+
+Pose GuardedMove::resting(const Pose& pose, ContactSignature signature) const {
+  Pose rest = rest_setpoint(pose, signature, parameters_);
+  const bool turning = displacement_.tail<3>().any() && outcome_ != Outcome::kReached;
+  const bool turned = signature.bits >> 2 * kTranslations != 0;
+  if (rotates_ && !turning && !turned) rest.orientation = setpoint_.pose.orientation;
+  return rest;
 }
 
 void GuardedMove::settle(const Input& input) {
   if (input.wrench_fresh) ++settling_samples_;
   if (detector_.signature() != pressing_) {
     pressing_ = detector_.signature();
-    setpoint_.pose = rest_setpoint(input.pose, pressing_, parameters_);
+    setpoint_.pose = resting(input.pose, pressing_);
   }
   if (rotates_ && pressing_.bits != 0) creep(input.pose);
   const std::int64_t since_ns = input.time_ns - settling_since_ns_;
   const bool sampled =
       settling_samples_ > kSettlingExtraSamples &&
-      since_ns >= std::max(kRestWindow_ns, std::int64_t{1000} * parameters_.thresholds.debounce_us);
-  const bool at_rest = slower_than(kRestSpeed_mps, kRestSpeed_radps);
+      since_ns >= std::max(RecentPoses::kWindow_ns,
+                           std::int64_t{1000} * parameters_.thresholds.debounce_us);
+  const bool at_rest = recent_.slower_than(kRestSpeed_mps, kRestSpeed_radps);
   const bool pressed_long = !aligning_ || since_ns >= kCreepIn_ns;
   const bool sure = sampled && pressed_long && at_rest && detector_.weak().bits == 0;
   if (rotates_ && since_ns >= kSettlingMax_ns) detector_.drop_weak();
@@ -276,7 +291,7 @@ void GuardedMove::settle(const Input& input) {
 void GuardedMove::finish(const Input& input) {
   phase_ = Phase::kDone;
   detector_.drop_weak();
-  setpoint_.pose = rest_setpoint(input.pose, detector_.signature(), parameters_);
+  setpoint_.pose = resting(input.pose, detector_.signature());
   Result result;
   result.outcome = outcome_;
   result.signature = detector_.signature();
@@ -298,9 +313,11 @@ void GuardedMove::creep(const Pose& pose) {
   for (int axis = 0; axis < 6; ++axis) {
     const bool held = pressing_.sign(axis) != 0;
     if (!yields(parameters_.compliance, axis) || (axis < 3 && !held)) way[axis] = 0.0;
-    if (axis >= 3 && !held) way[axis] -= std::clamp(way[axis], -give_rad, give_rad);
+    if (axis < 3 || held) continue;
+    way[axis] -= std::clamp(way[axis], -give_rad, give_rad);
+    if (pressing_.count() == 1 && pressing_.sign(axis - 3) != 0) way[axis] = 0.0;
   }
-  const double step = step_s();
+  const double step = recent_.step_s();
   setpoint_.pose = displaced(setpoint_.pose, step / (step + kCreep_s) * way);
 }
 
@@ -356,42 +373,6 @@ ContactSignature GuardedMove::kept() const {
 
 ContactSignature GuardedMove::watched(ContactSignature bits) const {
   return {static_cast<std::uint16_t>(bits.bits & parameters_.trigger_mask.bits & ~leaving_.bits)};
-}
-
-void GuardedMove::remember(const Input& input) {
-  memory_[remembered_ % kMemory] = {input.time_ns, input.pose};
-  ++remembered_;
-}
-
-double GuardedMove::step_s() const {
-  if (remembered_ < 2) return 0.0;
-  const Moment& now = memory_[(remembered_ - 1) % kMemory];
-  const Moment& before = memory_[(remembered_ - 2) % kMemory];
-  return kNanosecond_s * static_cast<double>(now.time_ns - before.time_ns);
-}
-
-bool GuardedMove::slower_than(double speed_mps, double speed_radps) const {
-  const Moment& now = memory_[(remembered_ - 1) % kMemory];
-  const std::size_t moments = std::min(remembered_, kMemory);
-  for (std::size_t back = 1; back < moments; ++back) {
-    const Moment& then = memory_[(remembered_ - 1 - back) % kMemory];
-    const std::int64_t window_ns = now.time_ns - then.time_ns;
-    if (window_ns < kRestWindow_ns && back + 1 < kMemory) continue;
-    const double window_s = kNanosecond_s * static_cast<double>(window_ns);
-    return stayed(back, speed_mps * window_s, speed_radps * window_s);
-  }
-  return false;
-}
-
-// What turns back amid the window is at both of its ends where it was.
-bool GuardedMove::stayed(std::size_t moments, double way_m, double way_rad) const {
-  const Moment& now = memory_[(remembered_ - 1) % kMemory];
-  for (std::size_t back = 1; back <= moments; ++back) {
-    const Moment& then = memory_[(remembered_ - 1 - back) % kMemory];
-    const Vector6 moved = displacement_between(then.pose, now.pose);
-    if (moved.head<3>().norm() >= way_m || moved.tail<3>().norm() >= way_rad) return false;
-  }
-  return true;
 }
 
 }  // namespace tenon

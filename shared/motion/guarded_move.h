@@ -22,15 +22,13 @@
 // the force of a probe until it is at rest, its setpoint creeping after the pose, which is what
 // lets a part align flat; only then it rests with the keep force. Torque below torque_off_Nm turns
 // it by the spring's give alone: without that bound whatever the sensor is wrong by would turn it
-// for as long as it presses.
+// for as long as it presses. Nor does a press turn it about its own direction.
 //
 // The plant between setpoint and pose (an ODE rollout, or an admittance law in front of drives)
 // realises Compliance; the move itself never looks at the spring's own force. It bounds what the
 // plant can pull with, spring and feed-forward together, where something holds the tool back: also
 // where nobody watches for that contact.
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -40,6 +38,7 @@
 #include "shared/motion/motion_profile.h"
 #include "shared/motion/move_parameters.h"
 #include "shared/motion/outcome.h"
+#include "shared/motion/recent_poses.h"
 #include "shared/motion/setpoint.h"
 
 namespace tenon {
@@ -75,7 +74,10 @@ class GuardedMove {
 
   /// @param parameters must satisfy check_thresholds() (shared/motion/rules.h)
   /// @param signature the contacts that the tool holds as the move starts
-  GuardedMove(const MoveParameters& parameters, ContactSignature signature);
+  /// @param held the orientation that the setpoint had as the move before left it; without it the
+  /// tool's own, which a torque that counts for none has turned by the spring's give
+  GuardedMove(const MoveParameters& parameters, ContactSignature signature,
+              const std::optional<Eigen::Quaterniond>& held = std::nullopt);
 
   /// One step. The first call sets the start pose and time. After kDone the setpoint holds.
   Output update(const Input& input);
@@ -92,11 +94,6 @@ class GuardedMove {
                                           const MoveParameters& parameters);
 
  private:
-  struct Moment {
-    std::int64_t time_ns = 0;
-    Pose pose;
-  };
-
   /// One step in the move's own axes.
   void advance(const Input& input);
   [[nodiscard]] Input in_own_axes(const Input& input) const;
@@ -113,6 +110,9 @@ class GuardedMove {
   void settle(const Input& input);
   /// The setpoint of a tool that rotates follows it, pressing on.
   void creep(const Pose& pose);
+  /// The setpoint of a tool that is left where it is. What turns it without being a contact would
+  /// turn it on from move to move if the setpoint followed.
+  [[nodiscard]] Pose resting(const Pose& pose, ContactSignature signature) const;
   void finish(const Input& input);
   /// @param limited out: bit a: the spring's pull is at its limit on axis a
   [[nodiscard]] Pose clamped(const Pose& setpoint, const Pose& pose, std::uint8_t& limited) const;
@@ -122,15 +122,9 @@ class GuardedMove {
   /// While a contact is being made the tool presses on into those that it holds already; which of
   /// them are left shows when it is at rest.
   [[nodiscard]] ContactSignature kept() const;
-  /// Over the whole window that rest is judged by.
-  [[nodiscard]] bool slower_than(double speed_mps, double speed_radps) const;
-  /// Whether none of the last so many moments is this far from the present one.
-  [[nodiscard]] bool stayed(std::size_t moments, double way_m, double way_rad) const;
-  void remember(const Input& input);
-  /// From the update before to this one; 0 at the first.
-  [[nodiscard]] double step_s() const;
 
   MoveParameters parameters_;
+  std::optional<Eigen::Quaterniond> held_;  ///< as the move begins, in its own axes
   std::optional<Eigen::Quaterniond> axes_;  ///< the move's, in the task frame, where they differ
   bool rotates_ = false;                    ///< something may turn the tool
   ContactDetector detector_;
@@ -143,7 +137,7 @@ class GuardedMove {
 
   Phase phase_ = Phase::kMoving;
   bool started_ = false;
-  Moment first_;
+  RecentPoses::Moment first_;
   Pose rest_;  ///< setpoint at the first pose
   Setpoint setpoint_;
   MotionProfile profile_;
@@ -164,9 +158,7 @@ class GuardedMove {
   std::optional<Result> result_;
 
   /// The last poses, to tell rest from motion through encoder quantisation.
-  static constexpr std::size_t kMemory = 64;
-  std::array<Moment, kMemory> memory_{};
-  std::size_t remembered_ = 0;
+  RecentPoses recent_;
 };
 
 }  // namespace tenon

@@ -45,7 +45,7 @@ struct ContactThresholds {
 inline constexpr double kProbeOverOn = 1.5;
 
 /// A press whose line of action passes the tool tip this near is taken for one through it.
-inline constexpr double kPressLever_m = 2e-3;
+inline constexpr double kPressLever_m = 1e-3;
 
 /// Torque thresholds for tools that are turned by what they press against and whose sensor nobody
 /// knows: off is the press of a probe at kPressLever_m, keep twice and on four times that.

@@ -133,14 +133,14 @@ TEST(Aligning, ARecordedMoveInCarriedAxesReplaysBitForBit) {
   EXPECT_EQ(again.result()->duration_ns, result.move.duration_ns);
 }
 
-/// Presses something that cannot turn it. @param torque_Nm what the sensor is off by about z at the
-/// press of a probe, in proportion at others
-GuardedMove::Result pressed_with_torque_off_by(double torque_Nm) {
+/// Presses something at +x that cannot turn it. @param torque_Nm what the sensor is off by about an
+/// axis (0..2) at the press of a probe, in proportion at others
+GuardedMove::Result pressed_with_torque_off_by(double torque_Nm, int about) {
   MoveParameters push;
-  push.compliance.compliant_axes = 0b100001;
+  push.compliance.compliant_axes = 0b111001;
   push.compliance.stiffness_Nmpr = 5.0;
   push.compliance.damping_Nmspr = 1.0;
-  push.sensed_axes = 0b011111;
+  push.sensed_axes = 0b000111;
   push.thresholds = with_press_torques(push.thresholds);
   push.timeout_us = 30'000'000;
   push.displacement[0] = 0.02;
@@ -153,7 +153,8 @@ GuardedMove::Result pressed_with_torque_off_by(double torque_Nm) {
   for (input.time_ns = 0; !move.result(); input.time_ns += 1000 * kStep_us) {
     input.pose = tool.state().pose;
     const double press_N = kWall_Npm * std::max(0.0, input.pose.position_m.x() - kWall_m);
-    input.wrench << -press_N, 0.0, 0.0, 0.0, 0.0, torque_Nm * press_N / probe_N;
+    input.wrench << -press_N, 0.0, 0.0, 0.0, 0.0, 0.0;
+    input.wrench[3 + about] = torque_Nm * press_N / probe_N;
     tool.update(move.update(input).setpoint, input.wrench, 1e-6 * kStep_us);
   }
   return *move.result();
@@ -163,13 +164,55 @@ TEST(Aligning, WhatASensorIsWrongByTurnsAPressedToolByTheSpringsGiveAlone) {
   const ContactThresholds t = with_press_torques({});
   const double give_rad = t.torque_off_Nm / 5.0;
   for (const double share : {-0.95, -0.3, 0.0, 0.3, 0.95}) {
-    const GuardedMove::Result result = pressed_with_torque_off_by(share * t.torque_off_Nm);
+    const GuardedMove::Result result = pressed_with_torque_off_by(share * t.torque_off_Nm, 2);
     EXPECT_EQ(result.outcome, Outcome::kContact);
     EXPECT_LE(std::abs(turn_of(result.pose)), 2.0 * give_rad) << share;
     EXPECT_LT(result.duration_ns, 3'000'000'000) << share;
   }
-  const GuardedMove::Result turned = pressed_with_torque_off_by(2.0 * t.torque_off_Nm);
+  const GuardedMove::Result turned = pressed_with_torque_off_by(2.0 * t.torque_off_Nm, 2);
   EXPECT_GT(std::abs(turn_of(turned.pose)), 10.0 * give_rad);
+}
+
+TEST(Aligning, APressTurnsNothingAboutItsOwnDirection) {
+  const ContactThresholds t = with_press_torques({});
+  const double turning_Nm = 3.0 * t.torque_off_Nm;
+  const GuardedMove::Result result = pressed_with_torque_off_by(turning_Nm, 0);
+  EXPECT_EQ(result.outcome, Outcome::kContact);
+  EXPECT_LE(rotation_vector(result.pose.orientation).norm(), 2.0 * turning_Nm / 5.0);
+  EXPECT_LT(result.duration_ns, 3'000'000'000);
+}
+
+/// Where a tool ends that goes to and fro in free air while its sensor is off by a torque about z.
+double turned_after(int moves, double torque_Nm, bool hand_on) {
+  MoveParameters move;
+  move.compliance.stiffness_Nmpr = 5.0;
+  move.compliance.damping_Nmspr = 1.0;
+  move.sensed_axes = 0b000111;
+  Admittance tool(move.compliance);
+  GuardedMove::Input input;
+  input.wrench[5] = torque_Nm;
+  std::optional<Eigen::Quaterniond> held;
+  for (int i = 0; i < moves; ++i) {
+    move.displacement[1] = i % 2 == 0 ? 0.02 : -0.02;
+    GuardedMove guarded(move, {}, hand_on ? held : std::nullopt);
+    Setpoint setpoint;
+    for (; !guarded.result(); input.time_ns += 1000 * kStep_us) {
+      input.pose = tool.state().pose;
+      setpoint = guarded.update(input).setpoint;
+      tool.update(setpoint, input.wrench, 1e-6 * kStep_us);
+    }
+    held = setpoint.pose.orientation;
+  }
+  return turn_of(tool.state().pose);
+}
+
+TEST(Aligning, AToolInFreeAirIsNotTurnedOnFromMoveToMove) {
+  constexpr double kTorque_Nm = 0.005;
+  constexpr double kGive_rad = kTorque_Nm / 5.0;
+  EXPECT_NEAR(turned_after(1, kTorque_Nm, true), kGive_rad, 0.2 * kGive_rad);
+  EXPECT_NEAR(turned_after(20, kTorque_Nm, true), kGive_rad, 0.2 * kGive_rad);
+  // As if each move began from where the one before had left the tool.
+  EXPECT_GT(turned_after(20, kTorque_Nm, false), 5.0 * kGive_rad);
 }
 
 TEST(Aligning, AFaceOfTwentyMillimetresIsFoundWithPressTorques) {
