@@ -7,10 +7,9 @@
 namespace tenon::planner {
 namespace {
 
-// What an arm adds to a plan's own errors needs room, too: a plan that ends at the rim of the
-// tolerance is done, and wrong now and then. Where the moves are the task's own choice there may be
-// none that end nearer.
-constexpr double kOfTolerance = 0.7;
+// What an arm adds to a plan's own errors needs as much room again: a plan that ends at the rim of
+// the tolerance is done, and wrong now and then.
+constexpr double kOfTolerance = 0.5;
 
 }  // namespace
 
@@ -37,7 +36,7 @@ double edge_cost(const BeliefSummary& from, const BeliefSummary& to, const Task&
 }
 
 bool at_goal(const BeliefSummary& belief, const Task& task) {
-  const double within_m = (task.guide_moves ? kOfTolerance : 1.0) * task.goal_tolerance_m;
+  const double within_m = kOfTolerance * task.goal_tolerance_m;
   return belief.farthest_m <= within_m &&
          distance(belief.mean, task.goal, metric_of(task)) <= within_m &&
          belief.uncertainty_m2 <= task.goal_uncertainty_m2 && belief.inserted;

@@ -25,8 +25,8 @@ struct BeliefSummary {
 [[nodiscard]] double edge_cost(const BeliefSummary& from, const BeliefSummary& to,
                                const Task& task);
 
-/// d(mean, goal) <= d_tol, u <= u_tol, and every particle by itself within d_tol and inserted;
-/// within 0.7 d_tol where the task has guide_moves.
+/// d(mean, goal) <= d_tol / 2, u <= u_tol, and every particle by itself within d_tol / 2 and
+/// inserted: the other half is the arm's.
 [[nodiscard]] bool at_goal(const BeliefSummary& belief, const Task& task);
 
 }  // namespace tenon::planner

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "executor/dry_run/plan_check.h"
 #include "tests/support/planned.h"
@@ -38,22 +40,31 @@ TEST(EditedPlan, TheWholeOneIsAcceptedAndDone) {
   EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
 }
 
+// The table may be off by 0.09 m to each side, and every touch adds to what the envelopes leave
+// open: only what the longest step goes is more than that.
+std::vector<Step>::iterator longest_step(Plan& plan) {
+  return std::max_element(plan.steps.begin(), plan.steps.end(), [](const Step& a, const Step& b) {
+    return a.displacement.norm() < b.displacement.norm();
+  });
+}
+
 TEST(EditedPlan, OneThatEndsTooSoonIsNotDone) {
   Plan plan = box_plan("1");
-  ASSERT_GT(plan.steps.size(), 3U);
-  plan.steps.resize(plan.steps.size() - 3);
+  const auto longest = longest_step(plan);
+  ASSERT_NE(longest, plan.steps.begin());
+  plan.steps.erase(longest, plan.steps.end());
   for (OutcomeRule& rule : plan.steps.back().outcomes) {
     if (rule.successor != kSuccessorFail) rule.successor = kSuccessorDone;
   }
   expect_not_at_goal(plan);
 }
 
-TEST(EditedPlan, OneWhoseLastStepIsShorterIsNotDone) {
+TEST(EditedPlan, OneWhoseLongestStepIsShorterIsNotDone) {
   Plan plan = box_plan("1");
-  Step& last = plan.steps.back();
-  const Vector6 missing = 0.8 * last.displacement;
-  last.displacement -= missing;
-  for (OutcomeRule& rule : last.outcomes) {
+  Step& longest = *longest_step(plan);
+  const Vector6 missing = 0.95 * longest.displacement;
+  longest.displacement -= missing;
+  for (OutcomeRule& rule : longest.outcomes) {
     rule.envelope.travelled_min -= missing;
     rule.envelope.travelled_max -= missing;
   }
