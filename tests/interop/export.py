@@ -20,19 +20,12 @@ import numpy as np
 
 from mcap_file import McapFile, Wrong
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from failures import run_test  # pylint: disable=wrong-import-position
+
 SEED = 20250101
 SAMPLES = 200
 AXES = ("x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad")
-
-
-class Failures:
-    def __init__(self):
-        self.count = 0
-
-    def check(self, good, what):
-        if not good:
-            self.count += 1
-            print(f"FAILED: {what}")
 
 
 def export(monitor, *words, limit_bytes=None):
@@ -294,11 +287,10 @@ def check_reader(folder, failures):
             pass
 
 
-def main():
+def main(failures):
     monitor, runs, source = sys.argv[1:4]
     sys.path.insert(0, str(pathlib.Path(source) / "shared/python"))
     import tenon  # pylint: disable=import-outside-toplevel
-    failures = Failures()
     with tempfile.TemporaryDirectory(prefix="tenon_interop_") as scratch:
         folder = pathlib.Path(scratch)
         subprocess.run([runs, folder], check=True, stdout=subprocess.DEVNULL)
@@ -307,9 +299,7 @@ def main():
         check_several(monitor, folder, tenon, failures)
         check_refusals(monitor, folder, failures)
         check_reader(folder, failures)
-    print(f"{failures.count} failures")
-    return 1 if failures.count else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_test(main)

@@ -15,7 +15,7 @@ import tempfile
 
 import jsonschema
 
-from export import Failures, check_row, expected_cycle, export
+from export import check_row, expected_cycle, export, run_test
 
 HERE = pathlib.Path(__file__).resolve().parent
 SEED = 20250102
@@ -70,11 +70,10 @@ def check_file(tenon, log, mcap, folder, failures):
           f"found by time, made by {indexed['library']}")
 
 
-def main():
+def main(failures):
     monitor, runs, source = sys.argv[1:4]
     sys.path.insert(0, str(pathlib.Path(source) / "shared/python"))
     import tenon  # pylint: disable=import-outside-toplevel
-    failures = Failures()
     with tempfile.TemporaryDirectory(prefix="tenon_mcap_core_") as scratch:
         folder = pathlib.Path(scratch)
         install(folder)
@@ -91,9 +90,7 @@ def main():
         ended = subprocess.run(["node", "read.js", folder / "damaged.mcap"], cwd=folder, text=True, capture_output=True,
                                check=False)
         failures.check(ended.returncode == 1 and "CRC" in ended.stderr, f"damaged.mcap: {ended.stderr}")
-    print(f"{failures.count} failures")
-    return 1 if failures.count else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_test(main)

@@ -11,6 +11,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from failures import run_test  # pylint: disable=wrong-import-position
+
 PROGRAMS = ["tenon-can", "tenon-evaluate", "tenon-exec", "tenon-inspect", "tenon-monitor", "tenon-plan", "tenon-sim"]
 # (program, the line so far, what bash must offer for its last word)
 COMPLETIONS = [
@@ -18,16 +21,6 @@ COMPLETIONS = [
     ("tenon-plan", ["--method", "contact"], {"contact-greedy"}),
     ("tenon-can", ["sc"], {"scan"}),
 ]
-
-
-class Failures:
-    def __init__(self):
-        self.count = 0
-
-    def check(self, good, what):
-        if not good:
-            self.count += 1
-            print(f"FAILED: {what}")
 
 
 def run(*command, **options):
@@ -94,9 +87,8 @@ def check_python(prefix, folder, failures):
     failures.check(said.startswith(str(prefix)) and "box_on_table_2d" in said, f"the Python package says {said}")
 
 
-def main():
+def main(failures):
     cmake, build, source = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
-    failures = Failures()
     with tempfile.TemporaryDirectory(prefix="tenon_installed_") as name:
         folder = pathlib.Path(name)
         prefix = folder / "usr"
@@ -111,9 +103,7 @@ def main():
         failures.check("nothing stands against" in checked, f"--check from the installation says {checked}")
         check_project(cmake, prefix, source, folder, failures)
         check_python(prefix, folder, failures)
-    print(f"{failures.count} failures")
-    return 1 if failures.count else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_test(main)

@@ -10,8 +10,12 @@ import pathlib
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import failures  # pylint: disable=wrong-import-position
 
 SECONDS_MAX = 300  # that a page may take for anything before it counts as hung
 
@@ -161,3 +165,8 @@ class Browser:
     def picture(self, file, whole=True):
         data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
         pathlib.Path(file).write_bytes(base64.b64decode(data))
+
+
+def run_test(test):
+    """Runs the test of a page, and ends the program; see tests/support/failures.py."""
+    failures.run_test(test, BrowserError)

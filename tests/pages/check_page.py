@@ -8,11 +8,9 @@
 import argparse
 import pathlib
 import subprocess
-import sys
 import tempfile
 
-from browser import Browser, BrowserError
-from plan_page import Failures
+from browser import Browser, run_test
 
 # (task, change, pictures: one for each start and view, parts that stand in something, finding)
 TASKS = [
@@ -60,25 +58,19 @@ def look(browser, page, expected, failures, pictures):
                 browser.picture(pictures / f"{name}.png")
 
 
-def main():
+def main(failures):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("plan")
     parser.add_argument("source")
     parser.add_argument("--pictures", type=pathlib.Path)
     arguments = parser.parse_args()
-    failures = Failures()
     with tempfile.TemporaryDirectory(prefix="tenon_pages_") as folder, Browser(webgl=False) as browser:
         for number, (task, change, *expected) in enumerate(TASKS):
             page, status = write_page(arguments, pathlib.Path(folder), number, task, change)
             failures.check(status == (2 if change else 0), f"{task}: exit status {status}")
             look(browser, page, expected, failures, arguments.pictures)
-    print(f"{len(TASKS)} pages, {failures.count} failures")
-    return 1 if failures.count else 0
+    return f"{len(TASKS)} pages"
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except BrowserError as error:
-        print(f"FAILED: {error}")
-        sys.exit(1)
+    run_test(main)

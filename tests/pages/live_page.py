@@ -13,13 +13,12 @@ import math
 import pathlib
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import urllib.request
 
-from browser import Browser, BrowserError
-from plan_page import BYTES_MAX, ROOT, Failures, look_at
+from browser import Browser, run_test
+from plan_page import BYTES_MAX, ROOT, look_at
 
 # At 100 Hz, so that a busy machine is no trouble; the plan is for this start.
 CELL, TASK, PLAN, START = "lwa4p", "box_on_table_2d", "box_1_lwa4p", "1"
@@ -148,13 +147,12 @@ def look(arguments, folder, webgl, browser, failures):
         failures.check(simulation.process.wait() == 0, "live: SIGINT ends it with another status than 0")
 
 
-def main():
+def main(failures):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     for name in ("bin", "source", "plans"):
         parser.add_argument(name)
     parser.add_argument("--pictures", type=pathlib.Path)
     arguments = parser.parse_args()
-    failures = Failures()
     with tempfile.TemporaryDirectory(prefix="tenon_pages_") as scratch:
         folder = pathlib.Path(scratch)
         for webgl in (True, False):
@@ -165,13 +163,7 @@ def main():
         with Browser(webgl=False) as browser:
             done = any(watch_a_run(arguments, folder, browser, failures) for _ in range(ATTEMPTS))
             failures.check(done, f"live: the plan was not done in {ATTEMPTS} runs")
-    print(f"{failures.count} failures")
-    return 1 if failures.count else 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except BrowserError as error:
-        print(f"FAILED: {error}")
-        sys.exit(1)
+    run_test(main)

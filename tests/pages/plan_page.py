@@ -9,10 +9,9 @@ import argparse
 import json
 import pathlib
 import subprocess
-import sys
 import tempfile
 
-from browser import Browser, BrowserError
+from browser import Browser, run_test
 
 BYTES_MAX = 3_000_000
 ROOT = "document.documentElement.dataset"
@@ -22,16 +21,6 @@ PLANS = [
     ("box_se2_csp6", "box_on_table_se2", "csp6"),
     ("toy_1d", "toy_1d", None),
 ]
-
-
-class Failures:
-    def __init__(self):
-        self.count = 0
-
-    def check(self, good, what):
-        if not good:
-            self.count += 1
-            print(f"FAILED: {what}")
 
 
 def write_page(arguments, folder, plan, task, cell):
@@ -101,14 +90,13 @@ def play(browser, file, failures):
     failures.check(not browser.said(), f"{name}: says something while it plays")
 
 
-def main():
+def main(failures):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("inspect")
     parser.add_argument("source")
     parser.add_argument("plans")
     parser.add_argument("--pictures", type=pathlib.Path)
     arguments = parser.parse_args()
-    failures = Failures()
     with tempfile.TemporaryDirectory(prefix="tenon_pages_") as folder:
         files = [write_page(arguments, pathlib.Path(folder), *plan) for plan in PLANS]
         for file in files:
@@ -120,13 +108,8 @@ def main():
                 for file in files:
                     look_at(browser, file, "#step=1.5", webgl, failures, arguments.pictures)
                 play(browser, files[0], failures)
-    print(f"{len(files)} pages, {failures.count} failures")
-    return 1 if failures.count else 0
+    return f"{len(files)} pages"
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except BrowserError as error:
-        print(f"FAILED: {error}")
-        sys.exit(1)
+    run_test(main)

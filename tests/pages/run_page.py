@@ -13,12 +13,11 @@ import math
 import pathlib
 import struct
 import subprocess
-import sys
 import tempfile
 import time
 
-from browser import Browser, BrowserError
-from plan_page import BYTES_MAX, ROOT, Failures, look_at, press
+from browser import Browser, run_test
+from plan_page import BYTES_MAX, ROOT, look_at, press
 
 PLAN = "box_4_gantry3"
 HEADING_BYTES = 28
@@ -201,13 +200,12 @@ def refuse(arguments, folder, failures):
         failures.check(not page.exists(), f"{options}: leaves a page")
 
 
-def main():
+def main(failures):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     for name in ("inspect", "page_runs", "source", "plans"):
         parser.add_argument(name)
     parser.add_argument("--pictures", type=pathlib.Path)
     arguments = parser.parse_args()
-    failures = Failures()
     with tempfile.TemporaryDirectory(prefix="tenon_pages_") as scratch:
         folder = pathlib.Path(scratch)
         subprocess.run([arguments.page_runs, folder], check=True)
@@ -222,13 +220,8 @@ def main():
                 use(browser, pages["box"], failures)
                 hold_against_the_log(browser, pages["box"], Oracle(folder / "box.lcmlog"), failures)
                 tell(browser, pages, failures)
-    print(f"{len(pages)} pages, {failures.count} failures")
-    return 1 if failures.count else 0
+    return f"{len(pages)} pages"
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except BrowserError as error:
-        print(f"FAILED: {error}")
-        sys.exit(1)
+    run_test(main)

@@ -13,6 +13,9 @@ import sys
 import tempfile
 import xml.etree.ElementTree as ElementTree
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from failures import run_test  # pylint: disable=wrong-import-position
+
 RUNS = 8
 # element: (attributes that it must have, that it may have, elements in it in this order)
 STRUCTURE = {
@@ -26,27 +29,19 @@ STRUCTURE = {
     "error": (set(), {"message", "type"}, []),
     "failure": (set(), {"message", "type"}, []),
 }
-failed = 0
 
 
-def check(good, what):
-    global failed
-    if not good:
-        failed += 1
-        print(f"FAILED: {what}")
-
-
-def check_structure(element):
+def check_structure(element, check):
     must, may, inside = STRUCTURE[element.tag]
     check(must <= set(element.attrib), f"{element.tag} lacks {must - set(element.attrib)}")
     check(set(element.attrib) <= must | may, f"{element.tag} has {set(element.attrib) - must - may}")
     places = [inside.index(child.tag) if child.tag in inside else -1 for child in element]
     check(-1 not in places and places == sorted(places), f"{element.tag} holds {[child.tag for child in element]}")
     for child in element:
-        check_structure(child)
+        check_structure(child, check)
 
 
-def check_against(suite, plan):
+def check_against(suite, plan, check):
     """That it says what the JSON says."""
     properties = {p.get("name"): p.get("value") for p in suite.find("properties")}
     success = plan["summary"]["success"]
@@ -81,7 +76,8 @@ def evaluate(arguments, folder, name, least):
     return ended.returncode, ended.stderr, ElementTree.parse(file).getroot()
 
 
-def main(arguments):
+def main(failures):
+    arguments, check = sys.argv[1:], failures.check
     with tempfile.TemporaryDirectory(prefix="tenon <junit> & 'co' ") as name:
         folder = pathlib.Path(name)
         folder.joinpath("harsh.yaml").write_text(
@@ -91,8 +87,8 @@ def main(arguments):
         rate = plan["summary"]["success"]["rate"]
         check(0.0 < rate < 1.0, f"all runs are alike: {rate}")
         check(status == 0 and said == "", f"exit status {status}, says '{said}'")
-        check_structure(root)
-        check_against(root.find("testsuite"), plan)
+        check_structure(root, check)
+        check_against(root.find("testsuite"), plan, check)
         check(root.findall(".//failure"), "no failure")
 
         status, said, root = evaluate(arguments, folder, "missed", rate + 0.01)
@@ -102,15 +98,14 @@ def main(arguments):
 
         status, said, root = evaluate(arguments, folder, "reached", rate)
         check(status == 0 and said == "", f"reached: exit status {status}, says '{said}'")
-        check_structure(root)
-        check_against(root.find("testsuite"), plan)
+        check_structure(root, check)
+        check_against(root.find("testsuite"), plan, check)
         check(not root.findall(".//failure") and root.findall(".//skipped"), "reached: failures all the same")
         left = sorted(file.name for file in folder.iterdir())
         wanted = ["harsh.yaml", "missed.xml", "out.json", "out.jsonl", "plain.xml", "reached.xml"]
         check(left == wanted, f"left: {left}")
-    print(f"3 files of {RUNS} runs, {failed} failures")
-    return 1 if failed else 0
+    return f"3 files of {RUNS} runs"
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    run_test(main)
