@@ -60,5 +60,22 @@ TEST(LateLoop, ALoopThatIsLateAgainAndAgainIsEndedByName) {
   for (const auto& drive : result.truth.drives) EXPECT_TRUE(drive.brake_engaged) << drive.joint;
 }
 
+// Its time is past before the run ends, and no cycle would have followed.
+TEST(LateLoop, TheLastCyclesLatenessSkipsNone) {
+  std::int64_t last_due_ns = 0;
+  WholeRun on_time(gantry_cell(), box_task(), box_plan("1"), with_faults({}));
+  (void)on_time.run_on_clock([&](std::int64_t due_ns) {
+    last_due_ns = due_ns;
+    return std::int64_t{0};
+  });
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), with_faults({}));
+  const auto result = run.run_on_clock([&](std::int64_t due_ns) {
+    return due_ns == last_due_ns ? 3 * kMillisecond_ns : std::int64_t{0};
+  });
+  EXPECT_EQ(result.ending.reason, EndReason::kPlanDone) << result.reason;
+  EXPECT_EQ(run.runner().statistics().cycles, on_time.runner().statistics().cycles);
+  EXPECT_EQ(run.runner().statistics().late_cycles, 0U);
+}
+
 }  // namespace
 }  // namespace tenon::tests

@@ -114,6 +114,19 @@ def hold_against_the_log(browser, page, oracle, failures):
                    f"{oracle.tools[-1]}")
 
 
+def hold_against_the_result(browser, page, result, failures):
+    """The cycles that were late: as many by the result, in the page's words, and marked in its curves."""
+    late, cycles = (json.loads(result.read_text())["cycle"][key] for key in ("late_cycles", "cycles"))
+    failures.check(late > 0, f"{page.stem}: no cycle was late")
+    browser.open(page)
+    browser.wait_for(f"{ROOT}.ready === 'true'")
+    marked = sum(data_of(browser)["run"]["curves"]["late_cycles"])
+    text = browser.evaluate("document.body.innerText")
+    failures.check(marked == late, f"{page.stem}: {marked} late cycles are marked, in the result are {late}")
+    for words in (f"{late} of {cycles + late} cycles late", f"Late cycles: {late}, "):
+        failures.check(words in text, f"{page.stem}: does not say '{words}'")
+
+
 def use(browser, page, failures):
     """Keys, steps, zoom, a joint, and the play to the end."""
     name = page.stem
@@ -219,6 +232,8 @@ def main(failures):
                     print(f"{name}: four times in {time.monotonic() - began:.1f} s")
                 use(browser, pages["box"], failures)
                 hold_against_the_log(browser, pages["box"], Oracle(folder / "box.lcmlog"), failures)
+                for name in ("box", "fault"):
+                    hold_against_the_result(browser, pages[name], folder / f"{name}.json", failures)
                 tell(browser, pages, failures)
     return f"{len(pages)} pages"
 

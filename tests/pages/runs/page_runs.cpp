@@ -3,9 +3,10 @@
 //
 //   page_runs FOLDER
 //
-// box: to its end, some of its cycles late. fault: a drive that falls silent in step 2. missed: an
-// environment that is nowhere near where the plan looks for it.
+// box: to its end. fault: a drive that falls silent in step 2. missed: an environment that is
+// nowhere near where the plan looks for it. Some cycles of each are late.
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -26,17 +27,13 @@ namespace {
 
 using namespace tenon;
 
-/// Records as they come, with bad times for the clock here and there: virtual time knows none.
-class LateNow final : public executor::CycleSink {
+/// Records as they come: in virtual time nobody needs a thread for them.
+class Drained final : public executor::CycleSink {
  public:
-  explicit LateNow(executor::Recorder& recorder) : recorder_(recorder) {}
+  explicit Drained(executor::Recorder& recorder) : recorder_(recorder) {}
 
   void record(const executor::CycleRecord& record) noexcept override {
-    executor::CycleRecord changed = record;
-    changed.wakeup_late_ns = record.sequence % 997 == 996 ? 2'400'000 : 60'000;
-    changed.compute_ns = 150'000;
-    changed.late_cycles = static_cast<std::uint32_t>(record.sequence / 997);
-    recorder_.record(changed);
+    recorder_.record(record);
     recorder_.drain();
   }
 
@@ -44,13 +41,19 @@ class LateNow final : public executor::CycleSink {
   executor::Recorder& recorder_;
 };
 
+/// How late the loop wakes: by more than a period once in about two seconds.
+std::int64_t lateness_ns(std::int64_t due_ns, const Cell& cell) {
+  const std::int64_t cycle_ns = std::int64_t{1000} * cell.robot.cycle_us;
+  return due_ns / cycle_ns % 997 == 996 ? cycle_ns + cycle_ns / 5 : cycle_ns / 33;
+}
+
 void write_run(const std::filesystem::path& folder, const std::string& name,
                const tests::WholeRun::Options& options) {
   const Cell cell = load_cell(tests::gantry_cell_file());
   const Task task = load_task(tests::box_task_file());
   const Plan plan = load_plan(tests::shared_plan("box_4_gantry3"));
   const auto recorder = std::make_unique<executor::Recorder>();
-  LateNow sink(*recorder);
+  Drained sink(*recorder);
   tests::WholeRun run(cell, task, plan, options, &sink);
   std::vector<std::string> warnings;
   executor::BusView bus;
@@ -68,7 +71,8 @@ void write_run(const std::filesystem::path& folder, const std::string& name,
                                 &run.controller().runner(), *recorder, bus);
   recorder->add(telemetry);
   telemetry.publish_setup();
-  const tests::WholeRun::Result ended = run.run();
+  const tests::WholeRun::Result ended =
+      run.run_on_clock([&cell](std::int64_t due_ns) { return lateness_ns(due_ns, cell); });
   const std::string fault = hw::fault_text(run.arm().fault(), cell.robot);
   const executor::RunResult result =
       executor::gather_result(run.controller(), run.runner(), 0, fault);
