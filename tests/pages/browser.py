@@ -125,6 +125,15 @@ class Browser:
                 raise BrowserError(f"still not so after {SECONDS_MAX} s: {expression}")
             time.sleep(0.05)
 
+    def wait_for_event(self, method):
+        """Until the browser tells of it by itself: a page that is being replaced may leave a question unanswered."""
+        end = time.monotonic() + SECONDS_MAX
+        while not any(event.get("method") == method for event in self.events):
+            event = self.receive(max(0.0, end - time.monotonic()))
+            if event is None:
+                raise BrowserError(f"no {method} in {SECONDS_MAX} s")
+            self.events.append(event)
+
     def open(self, file, width=1400, height=900, dark=False, calm=True, fragment=""):
         """@param file: or an address that begins with http  @param calm: the reader wants no motion: nothing plays by
         itself"""

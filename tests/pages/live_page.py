@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """tenon-sim --view in headless Chromium while a plan is executed in real time: the part moves on the page and ends
 where the truth file says; two look on at once; a simulation that is killed or stands still is told from
-one that has ended. On a screen and a phone, light and dark, with WebGL and without.
+one that has ended, and the page of one that was killed becomes that of the next. On a screen and a phone, light and
+dark, with WebGL and without.
 
   live_page.py BIN SOURCE PLANS [--pictures FOLDER]
 
@@ -15,6 +16,7 @@ import signal
 import subprocess
 import tempfile
 import time
+import urllib.parse
 import urllib.request
 
 from browser import Browser, run_test
@@ -29,15 +31,15 @@ ATTEMPTS = 3
 
 
 class Simulation:
-    """tenon-sim with a view, used with `with`."""
+    """tenon-sim with a view, used with `with`. @param port of the view; None: a free one"""
 
-    def __init__(self, arguments, folder, *more):
+    def __init__(self, arguments, folder, *more, port=None):
         source = pathlib.Path(arguments.source)
         self.truth_file = folder / "truth.json"
         self.process = subprocess.Popen(
             [f"{arguments.bin}/tenon-sim", "--cell", source / f"hw/cells/{CELL}.yaml", "--task",
              source / f"planner/tasks/{TASK}.yaml", "--start", START, "--offset", f"x_m={OFFSET_M[0]},y_m={OFFSET_M[1]}",
-             "--can", "slcan-listen://127.0.0.1:0", "--json", self.truth_file, "--view", *more],
+             "--can", "slcan-listen://127.0.0.1:0", "--json", self.truth_file, "--view", *([str(port)] if port else []), *more],
             stdout=subprocess.PIPE, text=True)
         lines = [self.process.stdout.readline() for _ in range(2)]
         if not lines[0].startswith("view: http://127.0.0.1:") or not lines[1].startswith("listening on "):
@@ -120,8 +122,12 @@ def hold_against_the_truth(browser, truth, first, seen, last, failures):
         failures.check(False, f"live: says {said}")
 
 
+def run_of(browser):
+    return json.loads(browser.evaluate("document.getElementById('page-data').textContent"))["run_id"]
+
+
 def lose_it(arguments, folder, browser, failures):
-    """A simulation that stands still, goes on, and is killed without a word."""
+    """A simulation that stands still, goes on, is killed without a word, and is followed by another one."""
     with Simulation(arguments, folder) as simulation:
         browser.open(simulation.url)
         browser.wait_for(f"{ROOT}.state === 'live' && {ROOT}.tool")
@@ -133,6 +139,16 @@ def lose_it(arguments, folder, browser, failures):
         browser.wait_for(f"{ROOT}.state === 'lost'")
         heading = browser.evaluate("document.querySelector('.now h2').textContent")
         failures.check(heading == "Connection lost", f"lost: says '{heading}'")
+    before = run_of(browser)
+    # The page asks again by itself, and a server of another run makes it load anew.
+    browser.events.clear()
+    with Simulation(arguments, folder, port=urllib.parse.urlsplit(simulation.url).port):
+        browser.wait_for_event("Page.loadEventFired")
+        browser.wait_for(f"{ROOT}.state === 'live' && {ROOT}.tool")
+        after = run_of(browser)
+        failures.check(before != after, f"followed: the page is still that of run {before}")
+        failures.check(browser.evaluate("performance.getEntriesByType('navigation')[0].type") == "reload",
+                       "followed: somebody else than the page has loaded it")
 
 
 def look(arguments, folder, webgl, browser, failures):
