@@ -49,11 +49,13 @@ if [[ -z $bin ]]; then
 fi
 task_file=planner/tasks/$task.yaml cell_file=hw/cells/$cell.yaml
 mkdir -p "$output"
-rm -f "$output"/{plan.tnp,plan.html,run.html,truth.json,sim.out,run.lcmlog,run.can.log,result.json,black-box.csv}
+rm -f "$output"/{plan.tnp,plan.json,plan.html,run.html,truth.json,sim.out,run.lcmlog,run.can.log,result.json,black-box.csv}
 
 echo "== Plan: $task from start $start, positions uncertain"
-"$bin/tenon-plan" "$task_file" --start "$start" --cell "$cell_file" --threads "$(nproc)" -o "$output/plan.tnp"
-"$bin/tenon-inspect" "$output/plan.tnp" --task "$task_file" --cell "$cell_file" --report "$output/plan.html" >/dev/null
+"$bin/tenon-plan" "$task_file" --start "$start" --cell "$cell_file" --threads "$(nproc)" -o "$output/plan.tnp" \
+  --json "$output/plan.json"
+"$bin/tenon-inspect" "$output/plan.tnp" --task "$task_file" --cell "$cell_file" --statistics "$output/plan.json" \
+  --report "$output/plan.html" >/dev/null
 
 echo
 echo "== Virtual arm: $cell, the environment displaced by a draw of seed $seed"

@@ -19,6 +19,8 @@
 #include "planner/report/inspection.h"
 #include "planner/report/report_data.h"
 #include "planner/report/run_page.h"
+#include "planner/report/search_section.h"
+#include "planner/report/statistics.h"
 #include "planner/report/summary.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
@@ -44,6 +46,7 @@ struct Arguments {
   std::string log;
   std::string recertify;
   std::string cell;
+  std::string statistics;
   std::size_t threads = all_cores();
 };
 
@@ -71,6 +74,9 @@ void describe(CLI::App& app, Arguments& a) {
                  "Task file: simulate the plan's whole chain and its validation again; exit status "
                  "1 if they are not what the plan says");
   app.add_option("--cell", a.cell, "Cell file that the plan was made with");
+  app.add_option("--statistics", a.statistics,
+                 "What tenon-plan wrote of this plan with --json: text and the plan's page tell of "
+                 "the search");
   app.add_option("--threads", a.threads, "Threads of the simulation")
       ->check(CLI::Range(1, 256))
       ->default_str("all cores");
@@ -179,8 +185,8 @@ std::optional<RecordedRun> run_of(const Arguments& a, const Plan& plan) {
   return executor::joined(executor::read_run_log(a.log, plan), result, a.log, a.run);
 }
 
-std::string report_of(const Arguments& a, const Plan& plan,
-                      const std::vector<std::uint8_t>& bytes) {
+std::string report_of(const Arguments& a, const Plan& plan, const std::vector<std::uint8_t>& bytes,
+                      const planner::SearchStory* story) {
   const std::optional<RecordedRun> run = run_of(a, plan);
   if (run && a.task.empty()) return planner::run_report(plan, *run, nullptr);
   const Task task = task_of(plan, a.task, a.cell).task;
@@ -188,7 +194,7 @@ std::string report_of(const Arguments& a, const Plan& plan,
   const planner::Certification certification = planner::certify(bytes, task, pool);
   const planner::Validation validation =
       planner::validate(plan, task, planner::start_of(plan, task), kReportDraws, pool);
-  if (!run) return planner::html_report(plan, task, certification, validation);
+  if (!run) return planner::html_report(plan, task, certification, validation, story);
   const planner::ReportData data = planner::report_data(plan, task, certification, validation);
   return planner::run_report(plan, *run, &data);
 }
@@ -198,6 +204,7 @@ int run(const Arguments& a) {
                                                              {"--task", a.task},
                                                              {"--recertify", a.recertify},
                                                              {"--cell", a.cell},
+                                                             {"--statistics", a.statistics},
                                                              {"--run", a.run},
                                                              {"--log", a.log}});
   if (!a.report.empty() && a.task.empty() && a.run.empty() && a.log.empty()) {
@@ -209,13 +216,18 @@ int run(const Arguments& a) {
   }
   const Plan plan = load_plan(a.plan);
   const std::vector<std::uint8_t> bytes = bytes_of(a.plan);
+  std::optional<planner::SearchStory> story;
+  if (!a.statistics.empty()) {
+    story = planner::read_statistics(a.statistics, config::read_file(a.statistics), bytes);
+  }
   const Verdict verdict = a.recertify.empty() ? Verdict{} : recertify(a, plan, bytes);
-  if (!a.report.empty()) write_file(a.report, report_of(a, plan, bytes));
+  if (!a.report.empty()) write_file(a.report, report_of(a, plan, bytes, story ? &*story : nullptr));
   if (a.json == "-") {
     std::fputs(planner::plan_json(plan, bytes.size()).c_str(), stdout);
   } else {
     if (!a.json.empty()) write_file(a.json, planner::plan_json(plan, bytes.size()));
     std::fputs(planner::header_text(plan, bytes.size()).c_str(), stdout);
+    if (story) std::fputs(planner::search_text(*story).c_str(), stdout);
     std::fputs(planner::step_table(plan).c_str(), stdout);
   }
   std::fputs(verdict.text.c_str(), a.json == "-" ? stderr : stdout);

@@ -17,6 +17,7 @@
 #include "planner/main_plan_new_task.h"
 #include "planner/planner.h"
 #include "planner/report/check_page.h"
+#include "planner/report/statistics.h"
 #include "planner/report/summary.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"

@@ -28,4 +28,20 @@ const char* to_string(PlanStatus status) {
   return "?";
 }
 
+SearchRound round_of(const SearchParameters& parameters, const SearchResult& search,
+                     std::size_t heuristics) {
+  SearchRound round;
+  round.parameters = parameters;
+  round.expansions.resize(heuristics);
+  for (const std::size_t queue : search.queues) ++round.expansions[queue];
+  round.lower_bound = search.lower_bound;
+  if (!search.has_path) {
+    round.outcome = to_string(search.status);
+    return round;
+  }
+  round.steps = search.path.size();
+  round.cost = search.cost;
+  return round;
+}
+
 }  // namespace tenon::planner

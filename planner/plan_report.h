@@ -38,6 +38,18 @@ struct PlannerTimes {
   double validation_s = 0.0;
 };
 
+/// One of the searches that planning made, each without what refuted the paths before.
+struct SearchRound {
+  SearchParameters parameters;
+  std::vector<std::size_t> expansions;  ///< by heuristic, see PlanReport
+  std::size_t steps = 0;                ///< of its path; 0: none
+  double cost = 0.0;                    ///< of its path
+  double lower_bound = 0.0;             ///< of the optimum
+  std::string outcome;                  ///< in words: what came of its path
+};
+[[nodiscard]] SearchRound round_of(const SearchParameters& parameters, const SearchResult& search,
+                                   std::size_t heuristics);
+
 struct PlanReport {
   PlanMethod method = PlanMethod::kMha;
   PlanStatus status = PlanStatus::kExhausted;
@@ -49,7 +61,10 @@ struct PlanReport {
   Validation validation;        ///< of the plan, see validate()
 
   // What it took.
-  SearchResult search;               ///< the last one
+  SearchResult search;              ///< the last one that the plan is of, else the last one
+  std::vector<SearchRound> rounds;  ///< all of them
+  /// What chooses among the open states, in words: the anchor, then each guide.
+  std::vector<std::string> heuristics;
   std::size_t expansions = 0;        ///< of all searches
   std::size_t expansions_first = 0;  ///< of the first of them, before anything was refuted
   std::size_t guides = 0;            ///< that led the searches

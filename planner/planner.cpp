@@ -168,6 +168,7 @@ class Planning {
                        [this] { return touched_in_turn(); });
     });
     report_.guides = attractors.guides.size();
+    report_.heuristics = heuristic_names(attractors.guides);
     report_.unsettled = attractors.unsettled;
     tell(guides_found(attractors.guides, long_succ_.counters().rollouts));
     return attractors;
@@ -246,6 +247,7 @@ class Planning {
                  ? contact_greedy_search(graph, parameters, stop)
                  : mha_search(graph, parameters, stop);
     });
+    report_.rounds.push_back(round_of(parameters, report_.search, graph.inadmissible_count() + 1));
     report_.expansions += report_.search.expanded.size();
     if (report_.refusals.empty()) report_.expansions_first = report_.expansions;
     doing_ = "judging a path";
@@ -255,6 +257,7 @@ class Planning {
   void learn(const Refutation& refutation) {
     const auto refused_step = searched_->learn(refutation, report_.search.path);
     report_.refusals.push_back(lesson(refutation, refused_step));
+    report_.rounds.back().outcome = "refuted: " + report_.refusals.back();
     tell("refuted: " + report_.refusals.back());
   }
 
@@ -280,7 +283,17 @@ class Planning {
     report_.plan = through_bytes(judged.plan);
     report_.certification = std::move(judged.certification);
     report_.validation = std::move(judged.estimate);
+    if (search.has_path) kept_round();
     if (options_.planned) options_.planned(report_);
+  }
+
+  /// The last search's path is the plan, and no other one's is any more.
+  void kept_round() {
+    constexpr const char* kPlan = "the plan";
+    for (SearchRound& round : report_.rounds) {
+      if (round.outcome == kPlan) round.outcome = "a plan, until a cheaper one was found";
+    }
+    report_.rounds.back().outcome = kPlan;
   }
 
   /// Ever lower weights while the budget lasts, the last of them 1. What refutes a path on the way
@@ -308,7 +321,11 @@ class Planning {
   /// Whether the last search's path is kept.
   bool better() {
     const std::vector<Vector6> path = searched_->displacements(report_.search.path);
-    if (path == kept_path_) return tell_bound();
+    std::string& outcome = report_.rounds.back().outcome;
+    if (path == kept_path_) {
+      outcome = "the plan's own path";
+      return tell_bound();
+    }
     Judgement judgement = judge_.judge(path);
     if (const auto* refutation = std::get_if<Refutation>(&judgement)) {
       learn(*refutation);
@@ -316,6 +333,7 @@ class Planning {
       return false;
     }
     auto& judged = std::get<JudgedPlan>(judgement);
+    outcome = "holds, and is not cheaper";
     if (!(judged.plan.cost < report_.plan->cost)) return false;
     keep(std::move(judged), path, report_.search);
     return true;

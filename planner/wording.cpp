@@ -57,6 +57,16 @@ std::string guide_text(const Guide& guide) {
   return contacts;
 }
 
+std::vector<std::string> heuristic_names(const std::vector<Guide>& guides) {
+  std::vector<std::string> names = {"anchor"};
+  for (const Guide& guide : guides) {
+    const std::string contacts = guide_text(guide);
+    names.push_back((contacts.empty() ? "straight" : contacts) +
+                    (guide.goals.size() > 1 ? ", to the goal by its mouth" : ", to the goal"));
+  }
+  return names;
+}
+
 std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves) {
   std::string text = format("%zu guides, found with %llu moves", guides.size(),
                             static_cast<unsigned long long>(moves));

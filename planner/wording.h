@@ -26,6 +26,9 @@ struct SearchLimits {
 /// "+x to a face, -z to a face".
 [[nodiscard]] std::string guide_text(const Guide& guide);
 
+/// What chooses among the open states: the anchor, then each guide.
+[[nodiscard]] std::vector<std::string> heuristic_names(const std::vector<Guide>& guides);
+
 // Progress.
 /// That planning goes on. @param doing "searching"  @param moves simulated so far, of all kinds
 [[nodiscard]] std::string still(const char* doing, std::uint64_t moves, std::size_t states);

@@ -9,6 +9,7 @@
 #include "planner/report/plan_sections.h"
 #include "planner/report/report_data.h"
 #include "planner/report/report_words.h"
+#include "planner/report/search_section.h"
 #include "planner/report/summary.h"
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
@@ -66,7 +67,7 @@ std::string stills(const ReportData& data) {
 }  // namespace
 
 std::string html_report(const Plan& plan, const Task& task, const Certification& certification,
-                        const Validation& validation) {
+                        const Validation& validation, const SearchStory* story) {
   const ReportData data = report_data(plan, task, certification, validation);
   const std::string task_name = drawing::escaped(plan.task_name);
   const std::string start_name = drawing::escaped(plan.start_name);
@@ -76,7 +77,8 @@ std::string html_report(const Plan& plan, const Task& task, const Certification&
                  start_name + "</span></h1>\n" + verdict(data) + badges(data);
   page.body =
       "<section class='stage' aria-label='The plan in motion' data-part='stage'></section>\n" +
-      stills(data) + reasons(data) + uncertainty_section(data) + moves_section(data);
+      stills(data) + reasons(data) + uncertainty_section(data) +
+      (story == nullptr ? std::string() : search_section(*story)) + moves_section(data);
   page.json = page_json(data);
   return drawing::live_document(page);
 }

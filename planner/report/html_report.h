@@ -6,6 +6,7 @@
 
 #include "planner/judge/certification.h"
 #include "planner/judge/validation.h"
+#include "planner/report/statistics.h"
 #include "shared/plan/plan.h"
 #include "shared/task/task.h"
 
@@ -14,8 +15,10 @@ namespace tenon::planner {
 /// One self-contained HTML document with inline SVG.
 /// @param certification of this plan; its first run gives the particles' paths
 /// @param validation drawn faintly; of a baseline also the uncertainty, which it does not know
+/// @param story how it was found; null: the page does not say
 [[nodiscard]] std::string html_report(const Plan& plan, const Task& task,
                                       const Certification& certification,
-                                      const Validation& validation);
+                                      const Validation& validation,
+                                      const SearchStory* story = nullptr);
 
 }  // namespace tenon::planner

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
@@ -63,6 +62,8 @@ std::string rules_text(const Plan& plan, const Step& step) {
   return text;
 }
 
+}  // namespace
+
 double peak_force_N(const PlanReport& report) {
   double peak_N = 0.0;
   for (const Draw& draw : report.validation.draws) {
@@ -73,7 +74,6 @@ double peak_force_N(const PlanReport& report) {
   return peak_N;
 }
 
-/// A line for every draw that missed the goal: how unlikely its start was, and what stopped it.
 std::vector<std::string> missed(const PlanReport& report, const Task& task) {
   std::vector<std::string> lines;
   for (const Draw& draw : report.validation.draws) {
@@ -90,8 +90,6 @@ std::vector<std::string> missed(const PlanReport& report, const Task& task) {
   }
   return lines;
 }
-
-}  // namespace
 
 std::string cost_text(const Plan& plan) {
   return format("cost %.0f, ", plan.cost) +
@@ -181,56 +179,6 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
   text += cell_changes_text(report.adapted);
   for (const std::string& refusal : report.refusals) text += "refuted: " + refusal + "\n";
   return text + step_table(plan);
-}
-
-std::string statistics_json(const PlanReport& report, const Task& task) {
-  const auto moves = [](const SuccessorEngine::Counters& c) {
-    return nlohmann::ordered_json{
-        {"simulated", c.rollouts}, {"memo_hits", c.memo_hits}, {"failures", c.failures}};
-  };
-  nlohmann::ordered_json json;
-  json["status"] = to_string(report.status);
-  json["reason"] = report.reason;
-  json["method"] = to_string(report.method);
-  json["guides"] = report.guides;
-  json["guide"] = report.guide;
-  json["states"] = report.states;
-  json["expansions"] = report.expansions;
-  json["expansions_first"] = report.expansions_first;
-  json["refusals"] = report.refusals;
-  json["adapted"] = report.adapted;
-  json["moves"] = {{"attractors", moves(report.attractor_moves)},
-                   {"search", moves(report.search_moves)},
-                   {"certification", report.certification_moves},
-                   {"validation", report.validation_moves}};
-  json["time_s"] = {{"attractors", report.times.attractors_s},
-                    {"search", report.times.search_s},
-                    {"certification", report.times.certification_s},
-                    {"validation", report.times.validation_s}};
-  if (report.plan) {
-    json["start"] = report.plan->start_name;
-    json["steps"] = report.plan->steps.size();
-    json["bytes"] = report.bytes.size();
-    json["cost"] = report.plan->cost;
-    json["bound"] = report.plan->bound;
-    json["search_cost"] = report.search.cost;
-    json["search_lower_bound"] = report.search.lower_bound;
-    json["draws"] = report.plan->draws;
-    json["draws_at_goal"] = report.plan->draws_at_goal;
-    const Interval interval = wilson_interval(report.plan->draws_at_goal, report.plan->draws);
-    json["wilson95_low"] = interval.low;
-    json["wilson95_high"] = interval.high;
-    json["corners"] = report.validation.corners.size();
-    json["corners_at_goal"] = arrived(report.validation.corners);
-    json["beyond"] = report.validation.rim.size();
-    json["beyond_at_goal"] = arrived(report.validation.rim);
-    json["particle_sigmas"] = task.particle_sigmas;
-    json["draws_within_particles"] = report.validation.within(task.particle_sigmas);
-    json["draws_within_particles_at_goal"] = report.validation.at_goal_within(task.particle_sigmas);
-    json["missed"] = missed(report, task);
-    json["peak_force_N"] = peak_force_N(report);
-  }
-  return json.dump(2) + "\n";
 }
 
 }  // namespace tenon::planner

@@ -1,5 +1,5 @@
 #pragma once
-// A planning run in words and in JSON.
+// A planning run in words.
 
 #include <string>
 #include <vector>
@@ -31,7 +31,10 @@ namespace tenon::planner {
 [[nodiscard]] std::string summary(const PlanReport& report, const Task& task,
                                   const std::string& file);
 
-/// Keys are documented in planner/README.md.
-[[nodiscard]] std::string statistics_json(const PlanReport& report, const Task& task);
+/// A line for every draw that missed the goal: how unlikely its start was, and what stopped it.
+[[nodiscard]] std::vector<std::string> missed(const PlanReport& report, const Task& task);
+
+/// The largest force of any draw.
+[[nodiscard]] double peak_force_N(const PlanReport& report);
 
 }  // namespace tenon::planner

@@ -73,6 +73,9 @@ SearchResult contact_greedy_search(BeliefGraph& graph, const SearchParameters& p
   append(both.queues, second.queues);
   both.generated += second.generated;
   both.cost += second.cost;
+  // Of its legs' optima, which are none of the whole.
+  both.lower_bounds.clear();
+  both.costs.clear();
   both.bound = std::numeric_limits<double>::infinity();
   both.lower_bound = 0.0;
   return both;

@@ -91,6 +91,8 @@ class Search {
     for (std::size_t v = 0; v < open_.size(); ++v) take(state, v);
     result_.expanded.push_back(state);
     result_.queues.push_back(q);
+    result_.lower_bounds.push_back(lower_bound_ / parameters_.w1);
+    result_.costs.push_back(g(kGoal));
     if (graph_.is_goal(state)) return relax({state, kGoal, 0}, 0.0);
     for (const Edge& edge : graph_.successors(state)) {
       if (edge.to != state) relax({state, edge.to, edge.label}, edge.cost);

@@ -45,7 +45,10 @@ struct SearchResult {
   double lower_bound = 0.0;         ///< of the optimum: L / w1
   std::vector<StateId> expanded;    ///< in order, twice where it happened twice
   std::vector<std::size_t> queues;  ///< which heuristic chose each of them
-  std::size_t generated = 0;        ///< states seen, the start included
+  /// As it stood at each of them: what was proven, and the best path's cost, infinite without one.
+  std::vector<double> lower_bounds;
+  std::vector<double> costs;
+  std::size_t generated = 0;  ///< states seen, the start included
 };
 
 /// Deterministic: ties are broken by (key, state number).

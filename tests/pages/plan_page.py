@@ -27,6 +27,9 @@ def write_page(arguments, folder, plan, task, cell):
     file = folder / f"{plan}.html"
     command = [arguments.inspect, f"{arguments.plans}/{plan}.tnp", "--report", str(file),
                "--task", f"{arguments.source}/planner/tasks/{task}.yaml"]
+    # The toy's page is one without it.
+    if plan != PLANS[-1][0]:
+        command += ["--statistics", f"{arguments.plans}/{plan}.json"]
     if cell:
         command += ["--cell", f"{arguments.source}/hw/cells/{cell}.yaml"]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
@@ -90,6 +93,31 @@ def play(browser, file, failures):
     failures.check(not browser.said(), f"{name}: says something while it plays")
 
 
+def tell_the_search(browser, file, statistics, failures):
+    """What stands in the section is what the file says, each number with its title."""
+    browser.open(file)
+    browser.wait_for(f"{ROOT}.ready === 'true'")
+    cells = lambda table: browser.evaluate(
+        f"[...document.querySelectorAll('#search ~ .wide')][{table}] && [...[...document.querySelectorAll("
+        f"'#search ~ .wide')][{table}].querySelectorAll('tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+    queues = [sum(search["expansions"][i] for search in statistics["searches"])
+              for i in range(len(statistics["heuristics"]))]
+    shown = cells(0)
+    failures.check([row[0] for row in shown] == statistics["heuristics"], f"{file.stem}: queues {shown}")
+    failures.check([int(row[1]) for row in shown] == queues, f"{file.stem}: expansions {shown}, in the file {queues}")
+    moves = statistics["moves"]
+    wanted = [moves["attractors"]["simulated"], moves["search"]["simulated"], moves["certification"], moves["validation"]]
+    failures.check([int(row[2]) for row in cells(1)] == wanted, f"{file.stem}: moves {cells(1)}, in the file {wanted}")
+    rows = browser.evaluate("document.querySelectorAll('#search ~ details tbody tr').length")
+    failures.check(rows == len(statistics["searches"]), f"{file.stem}: {rows} searches")
+    untitled = browser.evaluate("[...document.querySelectorAll('#search ~ .wide thead th')]"
+                                ".filter(h => h.scope !== 'col' || !h.textContent).length")
+    failures.check(untitled == 0, f"{file.stem}: {untitled} columns of the search without a title")
+    drawn = browser.evaluate("document.querySelectorAll('.course polyline').length")
+    failures.check(drawn == (2 if statistics["course"]["cost"] else 0), f"{file.stem}: {drawn} lines of the course")
+    return drawn
+
+
 def main(failures):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("inspect")
@@ -108,6 +136,11 @@ def main(failures):
                 for file in files:
                     look_at(browser, file, "#step=1.5", webgl, failures, arguments.pictures)
                 play(browser, files[0], failures)
+                drawn = [tell_the_search(browser, file, json.loads((pathlib.Path(arguments.plans) / f"{file.stem}.json")
+                                                                   .read_text()), failures) for file in files[:-1]]
+                failures.check(any(drawn), "no page draws cost against bound")
+                browser.open(files[-1])
+                failures.check(not browser.evaluate("document.getElementById('search')"), "toy_1d: tells of a search")
     return f"{len(files)} pages"
 
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "planner/planner.h"
+#include "planner/report/statistics.h"
 #include "planner/report/summary.h"
 #include "shared/plan/codec.h"
 #include "tests/planner/room_task.h"

@@ -141,6 +141,24 @@ double cost_of(const TableGraph& graph, const SearchResult& result) {
   return cost;
 }
 
+/// As the search went its cost fell and what was proven rose, and both were true all the time.
+void expect_course(const SearchResult& result, double exact) {
+  ASSERT_EQ(result.costs.size(), result.expanded.size());
+  ASSERT_EQ(result.lower_bounds.size(), result.expanded.size());
+  double cost = kInfinity;
+  double proven = 0.0;
+  for (std::size_t i = 0; i < result.costs.size(); ++i) {
+    EXPECT_LE(result.costs[i], cost);
+    EXPECT_GE(result.costs[i], exact - 1e-9);
+    EXPECT_GE(result.lower_bounds[i], proven);
+    EXPECT_LE(result.lower_bounds[i], exact + 1e-9);
+    cost = result.costs[i];
+    proven = result.lower_bounds[i];
+  }
+  EXPECT_LE(result.cost, cost);
+  EXPECT_GE(result.lower_bound, proven);
+}
+
 TEST(MhaSearch, KeepsItsBoundOnRandomGraphsAndExpandsNoStateThrice) {
   std::size_t with_path = 0;
   for (unsigned seed = 0; seed < 1000; ++seed) {
@@ -152,6 +170,7 @@ TEST(MhaSearch, KeepsItsBoundOnRandomGraphsAndExpandsNoStateThrice) {
     ASSERT_EQ(result.has_path, std::isfinite(exact)) << "seed " << seed;
     std::map<StateId, int> expansions;
     for (const StateId state : result.expanded) ASSERT_LE(++expansions[state], 2);
+    expect_course(result, exact);
     if (!result.has_path) {
       EXPECT_EQ(result.status, SearchStatus::kExhausted);
       continue;
