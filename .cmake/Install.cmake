@@ -24,6 +24,8 @@ foreach(readme README.md planner/FIRST_TASK.md planner/README.md executor/README
   install(FILES ${readme} DESTINATION ${data}/${folder} COMPONENT runtime)
 endforeach()
 
+install(DIRECTORY planner/pictures DESTINATION ${data}/planner COMPONENT runtime)
+
 # Manual pages and completion are what the installed programs say of themselves.
 find_program(GZIP gzip REQUIRED)
 mark_as_advanced(GZIP)
