@@ -85,6 +85,15 @@ void append_receive_pdos(Settings& settings, const Robot& robot, std::size_t ind
                                  {controlword}});
 }
 
+/// A drive that has it watches its setpoints, too, at rest as in motion, and takes their loss for
+/// its master's.
+void append_setpoint_deadline(Settings& settings, const Robot& robot, const Joint& joint) {
+  if (canopen_drive(joint).profile.fixed_identifiers) return;
+  settings.push_back({Action::kWriteOrTake, tenon::canopen::kRpdoCommunication,
+                      tenon::canopen::kPdoEventTimer, 2, robot.heartbeat_timeout_ms, 0xFFFFFFFF,
+                      true});
+}
+
 /// The first RPDO that no setpoint needs.
 std::uint8_t stop_rpdo(const Robot& robot) { return robot.targets_per_frame == 1 ? 2 : 3; }
 
@@ -205,6 +214,7 @@ Settings joint_settings(const Robot& robot, std::size_t index) {
   append_drive_objects(settings, robot, joint, DriveObject::kMasterWatch,
                        DriveObject::kPositionMax);
   append_receive_pdos(settings, robot, index);
+  append_setpoint_deadline(settings, robot, joint);
   if (takes_stop(canopen_drive(joint).profile)) append_stop_pdo(settings, robot);
   canopen::append_pdo(settings,
                       {PdoConfiguration::Direction::kTransmit,

@@ -38,7 +38,7 @@ constexpr std::array<Named, 22> kNames = {{
 }};
 
 constexpr std::array<Named, 4> kPdoNames = {{
-    {tenon::canopen::kRpdoCommunication, "RPDO # identifier, type"},
+    {tenon::canopen::kRpdoCommunication, "RPDO # identifier, type, deadline"},
     {tenon::canopen::kRpdoMapping, "RPDO # mapping"},
     {tenon::canopen::kTpdoCommunication, "TPDO # identifier, type"},
     {tenon::canopen::kTpdoMapping, "TPDO # mapping"},

@@ -61,6 +61,7 @@ inline constexpr std::uint16_t kHeartbeatProducer = 0x1017;
 inline constexpr std::uint16_t kIdentity = 0x1018;
 inline constexpr std::uint16_t kSyncOverflow = 0x1019;
 inline constexpr std::uint16_t kRpdoCommunication = 0x1400;
+inline constexpr std::uint8_t kPdoEventTimer = 5;  ///< sub-index; of an RPDO: its deadline, ms
 inline constexpr std::uint16_t kRpdoMapping = 0x1600;
 inline constexpr std::uint16_t kTpdoCommunication = 0x1800;
 inline constexpr std::uint16_t kTpdoMapping = 0x1A00;

@@ -109,5 +109,27 @@ TEST(FaultPhases, OnlyADrivesAnswersOrOnlyItsSetpointsAreLost) {
   }
 }
 
+// While the sensor is tared nothing is commanded that a joint could fail to follow: only the drive
+// itself can tell.
+TEST(FaultPhases, AtRestADriveMissesItsSetpointsByItself) {
+  for (const char* name : {"gantry3", "csp6"}) {
+    const Cell cell = shipped_cell(name);
+    const auto [task, plan] = planned_box(cell, "1");
+    WholeRun run(cell, task, plan,
+                 with_faults({"drop:node=1,at=enabling,time_s=0.02,id=rpdo,duration_s=100"}));
+    ASSERT_TRUE(run.prepare());
+    State last = State::kWaiting;
+    while (run.cycle()) {
+      if (run.controller().ending().reason == EndReason::kNone) last = run.controller().state();
+    }
+    const auto result = run.result();
+    EXPECT_LT(last, State::kRunning) << name << ": " << result.reason;
+    EXPECT_EQ(result.ending.reason, EndReason::kArmFault) << name << ": " << result.reason;
+    EXPECT_EQ(result.ending.arm_fault.kind, ArmFaultKind::kDriveFault) << name;
+    EXPECT_EQ(result.ending.arm_fault.node, 1) << name;
+    EXPECT_NE(result.reason.find("RPDO"), std::string::npos) << result.reason;
+  }
+}
+
 }  // namespace
 }  // namespace tenon::tests

@@ -38,7 +38,8 @@ TEST(BringUp, WritesTheDriveThisConfigurationInThisOrder) {
       {0x606600, 10},                                                          // 10 ms
       {0x140001, 0x80000202}, {0x140002, 1},          {0x160000, 0},
       {0x160001, 0x60400010}, {0x160002, 0x607A0020}, {0x160000, 2},
-      {0x140001, 0x00000202}, {0x140101, 0x80000183}, {0x140102, 255},  // the stop of all drives
+      {0x140001, 0x00000202}, {0x140005, 300},  // setpoints are missed after 300 ms
+      {0x140101, 0x80000183}, {0x140102, 255},  // the stop of all drives
       {0x160100, 0},          {0x160101, 0x60400010}, {0x160100, 1},
       {0x140101, 0x00000183}, {0x180001, 0xC0000191}, {0x180002, 1},
       {0x1A0000, 0},          {0x1A0001, 0x60410010}, {0x1A0002, 0x60770010},
@@ -46,6 +47,14 @@ TEST(BringUp, WritesTheDriveThisConfigurationInThisOrder) {
       {0x180101, 0xC0000282},  // the second TPDO that it had on
   };
   EXPECT_EQ(written, expected);
+}
+
+TEST(BringUp, ADriveThatWatchesNoSetpointsComesUpWithoutItsWatchSettled) {
+  GantryOnBus gantry;
+  gantry.nodes[1]->refuses[0x140005] = 0x06090011U;
+  gantry.nodes[2]->read_only.insert(0x140005);
+  EXPECT_TRUE(gantry.prepare()) << describe(gantry.arm.fault(), gantry.robot);
+  EXPECT_EQ(gantry.nodes[0]->objects[0x140005].value, 300U);
 }
 
 TEST(BringUp, GivesTheSensorTheHighestPriority) {
@@ -142,9 +151,9 @@ TEST(BringUp, AFixedMappingThatIsTheOneWantedIsTakenAsItIs) {
   for (const auto& write : gantry.nodes[0]->writes) {
     if (write.object >> 8 >= 0x1400 && write.object >> 8 < 0x1C00) pdos.push_back(write.object);
   }
-  EXPECT_EQ(pdos, (std::vector<std::uint32_t>{0x140001, 0x140002, 0x140001, 0x140101, 0x140102,
-                                              0x160100, 0x160101, 0x160100, 0x140101, 0x180001,
-                                              0x180002, 0x180001, 0x180101}));
+  EXPECT_EQ(pdos, (std::vector<std::uint32_t>{0x140001, 0x140002, 0x140001, 0x140005, 0x140101,
+                                              0x140102, 0x160100, 0x160101, 0x160100, 0x140101,
+                                              0x180001, 0x180002, 0x180001, 0x180101}));
   JointVector target = gantry.feedback.position;
   target[0] += 0.001;
   for (int i = 0; i < 3; ++i) gantry.cycle(ArmRequest::kEnabled, target);

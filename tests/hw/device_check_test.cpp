@@ -245,7 +245,7 @@ TEST(DeviceCheck, EveryObjectOfBringUpHasAName) {
       EXPECT_FALSE(object_name(line.setting.index).empty()) << std::hex << line.setting.index;
     }
   }
-  EXPECT_EQ(object_name(0x1401), "RPDO 2 identifier, type");
+  EXPECT_EQ(object_name(0x1401), "RPDO 2 identifier, type, deadline");
   EXPECT_EQ(object_name(0x1A03), "TPDO 4 mapping");
   EXPECT_EQ(object_name(0x2000), "");
 }

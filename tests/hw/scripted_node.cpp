@@ -42,6 +42,7 @@ void ScriptedNode::reset_communication() {
     const std::uint32_t off = k == 0 ? 0 : 0x80000000u;
     objects[0x140001 + (k << 8)] = {4, off | (0x200u + 0x100u * k + node_)};
     objects[0x140002 + (k << 8)] = {1, 255};
+    objects[0x140005 + (k << 8)] = {2, 0};
     objects[0x160000 + (k << 8)] = {1, 0};
     objects[0x160001 + (k << 8)] = objects[0x160002 + (k << 8)] = {4, 0};
   }

@@ -40,7 +40,9 @@ FaultKind spec(const char* name, const char* text, Names names) {
 std::vector<FaultKind> kinds_of_the_bus() {
   const Names missing = {arm(ArmFaultKind::kFeedbackMissing)};
   const Names stale = {arm(ArmFaultKind::kSensorStale)};
-  const Names behind = stays_behind();
+  // At rest the drive itself misses them.
+  Names unmoved = stays_behind();
+  unmoved.push_back(arm(ArmFaultKind::kDriveFault));
   return {
       spec("a frame dropped", "drop:node=JOINT", {}),
       spec("frames dropped", "drop:node=JOINT,duration_s=100", missing),
@@ -54,7 +56,7 @@ std::vector<FaultKind> kinds_of_the_bus() {
       spec("bus-off", "bus-off:node=127", {arm(ArmFaultKind::kBusOff)}),
       spec("interface down", "interface-down", {arm(ArmFaultKind::kBusDown)}),
       spec("answers lost", "drop:node=JOINT,duration_s=100,id=answers", missing),
-      spec("RPDOs lost", "drop:node=JOINT,duration_s=100,id=rpdo", behind),
+      spec("RPDOs lost", "drop:node=JOINT,duration_s=100,id=rpdo", unmoved),
       {"another master", Act::kOtherMaster, "", {arm(ArmFaultKind::kOtherMaster)}},
   };
 }
