@@ -49,6 +49,16 @@ void copy_joints(const std::vector<double>& from, std::array<float, kMaxJoints>&
   }
 }
 
+/// What the message does not say stands in the plan.
+Transition with_travel(Transition transition, const double (&travelled)[6], const Envelope& seen) {
+  const int axis = transition.index;
+  if (transition.deviation != Deviation::kTravelOutside || axis < 0 || axis >= 6) return transition;
+  transition.travelled = travelled[axis];
+  transition.travelled_min = seen.travelled_min[axis];
+  transition.travelled_max = seen.travelled_max[axis];
+  return transition;
+}
+
 std::uint64_t counted(std::int64_t value) {
   return static_cast<std::uint64_t>(std::max<std::int64_t>(value, 0));
 }
@@ -218,7 +228,9 @@ void RunLog::take(const tenon::step_event_t& m) {
   step.successor = static_cast<Successor>(m.successor);
   if (m.deviation > 0 && m.deviation <= static_cast<int>(Deviation::kContactUnforeseen)) {
     const int index = m.deviation_index < ContactSignature::kBits ? m.deviation_index : -1;
-    step.deviation = describe({step.successor, static_cast<Deviation>(m.deviation), index});
+    const auto deviation = static_cast<Deviation>(m.deviation);
+    step.deviation = describe(with_travel({step.successor, deviation, index}, m.travelled,
+                                          plan_.steps[step.step].rule(step.outcome).envelope));
     add_fault(since_start_s(m.monotonic_ns), format("step %d: ", m.step) + step.deviation);
   }
   step.signature = tenon::to_string(ContactSignature{static_cast<std::uint16_t>(m.signature)});

@@ -277,6 +277,9 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
 }
 
 std::string travel_outside(const Transition& t) {
+  if (t.travelled_min >= t.travelled_max) {
+    return format("travelled along %s outside what validation saw", axis_name(t.index));
+  }
   return format("travelled %.4g %s along %s where validation saw %.4g to %.4g",
                 shown(t.travelled, t.index), t.index < 3 ? "mm" : "deg", axis_name(t.index),
                 shown(t.travelled_min, t.index), shown(t.travelled_max, t.index));

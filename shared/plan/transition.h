@@ -21,7 +21,8 @@ struct Transition {
   Deviation deviation = Deviation::kNone;
   /// For kTravelOutside: the axis, 0..5. For the contact deviations: the bit, 0..11.
   int index = -1;
-  /// For kTravelOutside: how far it went along the axis, and from where to where it may, m or rad.
+  /// For kTravelOutside: how far it went along the axis, and from where to where it may, m or rad;
+  /// all 0 where it is read from a message, which does not say.
   double travelled = 0.0;
   double travelled_min = 0.0;
   double travelled_max = 0.0;

@@ -203,6 +203,8 @@ TEST(RunEvents, EachIsToldOnceByWhatTellsItFirst) {
   step.deviation = static_cast<std::int8_t>(Deviation::kContactMissing);
   step.deviation_index = 4;
   EXPECT_THAT(texts(events.of(step))[0], HasSubstr("contact +z"));
+  step.deviation = static_cast<std::int8_t>(Deviation::kTravelOutside);
+  EXPECT_THAT(texts(events.of(step))[0], HasSubstr("along ry outside what validation saw"));
 }
 
 class ExportLogTest : public testing::Test {

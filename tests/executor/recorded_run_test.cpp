@@ -95,6 +95,14 @@ TEST_F(RecordedRunTest, TheLogTellsAllCyclesStepsStatesAndTheEnd) {
   EXPECT_NEAR(peak_N, ran.steps[0].result.peak_force_N, 1e-3);
 }
 
+TEST_F(RecordedRunTest, AStepThatEndsOutsideItsEnvelopeSaysByHowMuchAsTheExecutorDid) {
+  plan.steps[0].outcomes[1].envelope.travelled_min[0] = 0.035;
+  run(0.13);
+  const RecordedRun run = read(log_bytes);
+  EXPECT_THAT(run.steps[0].deviation, HasSubstr("travelled 30.07 mm along x where validation saw"));
+  EXPECT_THAT(ran.message, HasSubstr(run.steps[0].deviation));
+}
+
 TEST_F(RecordedRunTest, TheResultTellsTheSameSteps) {
   const RecordedRun result = read_run_result("result.json", result_json, plan);
   const RecordedRun log = read(log_bytes);
