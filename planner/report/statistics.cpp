@@ -95,13 +95,19 @@ double number(const Json& json, double least = 0.0) {
   return value;
 }
 
+/// Of lists and objects no more than that they are: printing them takes as many calls as they are
+/// deep.
+std::string shown(const Json& json) {
+  return json.is_structured() ? std::string(json.type_name()) : json.dump();
+}
+
 std::uint64_t count(const Json& json) {
-  if (!json.is_number_unsigned()) throw Wrong{"a count is none: " + json.dump()};
+  if (!json.is_number_unsigned()) throw Wrong{"a count is none: " + shown(json)};
   return json.get<std::uint64_t>();
 }
 
 const Json& list(const Json& json) {
-  if (!json.is_array()) throw Wrong{"a list is none: " + json.dump()};
+  if (!json.is_array()) throw Wrong{"a list is none: " + shown(json)};
   return json;
 }
 

@@ -95,6 +95,16 @@ TEST(Statistics, AnotherPlansAreRefused) {
               HasSubstr("stats.json: it is of another plan"));
 }
 
+// Where a number belongs, lists within lists, as deep as a file of 200 kB holds them.
+TEST(Statistics, ListsWithinListsAreRefusedHoweverDeep) {
+  constexpr std::size_t kDeep = 100'000;
+  const std::string nested = std::string(kDeep, '[') + std::string(kDeep, ']');
+  for (const std::string& text : {R"({"status":"planned","bytes":)" + nested + "}", nested}) {
+    EXPECT_THAT(tests::refusal([&] { (void)read_statistics("stats.json", text, {}); }),
+                HasSubstr("give the file that tenon-plan wrote"));
+  }
+}
+
 TEST(Statistics, WhatIsMissingOrWrongIsRefusedInALine) {
   const PlanReport report = planned(room_task());
   const json whole = json::parse(statistics_json(report, room_task()));
