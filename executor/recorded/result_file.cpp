@@ -87,7 +87,11 @@ Pose pose_of(const Keys& keys) {
   const std::vector<double> p = keys.numbers("position_m", 3);
   const std::vector<double> q = keys.numbers("orientation_wxyz", 4);
   const Eigen::Quaterniond orientation(q[0], q[1], q[2], q[3]);
-  if (!(orientation.norm() > 0.5)) keys.refuse("orientation_wxyz", "must be a unit quaternion");
+  // The length of numbers that are each a double may be none.
+  const double length = orientation.norm();
+  if (!std::isfinite(length) || length < 0.5) {
+    keys.refuse("orientation_wxyz", "must be a unit quaternion");
+  }
   return {Vector3(p.data()), orientation.normalized()};
 }
 

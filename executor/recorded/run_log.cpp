@@ -216,7 +216,7 @@ void RunLog::take(const tenon::step_event_t& m) {
                       std::isfinite(orientation.norm()) && std::isfinite(m.duration_s) &&
                       std::isfinite(m.peak_force_N);
   if (m.step < 0 || m.step >= static_cast<int>(plan_.steps.size()) || m.outcome < 0 ||
-      m.outcome >= static_cast<int>(kOutcomes.size()) || !finite) {
+      m.outcome >= static_cast<int>(kOutcomes.size()) || !finite || orientation.norm() < 0.5) {
     ++malformed_;
     return;
   }

@@ -223,6 +223,9 @@ TEST_F(RecordedRunTest, AResultThatIsNoneOrOfAnotherPlanIsRefusedByKey) {
               HasSubstr("duration_s must be a number"));
   EXPECT_THAT(result_refusal(result_with("/cycle/late_cycles", -1)),
               HasSubstr("cycle.late_cycles must be a count"));
+  // Each a number, all of them of no length.
+  EXPECT_THAT(result_refusal(result_with("/steps/0/orientation_wxyz", {1e200, 0, 0, 1e200})),
+              HasSubstr("orientation_wxyz must be a unit quaternion"));
 }
 
 }  // namespace
