@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -46,6 +47,12 @@ class InputFolder {
   return {reinterpret_cast<const char*>(data), size};
 }
 
+/// Whether a line holds no control byte, which a terminal would obey.
+[[nodiscard]] inline bool obeys_nothing(std::string_view text) {
+  return std::none_of(text.begin(), text.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+}
+
 /// True where the work accepts its input. Anything but an InputError of one printable line is a
 /// crash.
 template <typename Work>
@@ -56,9 +63,7 @@ bool accepted(const Work& work) {
   } catch (const InputError& error) {
     const std::string line = error.what();
     must(!line.empty() && line.size() < 2200, "a refusal is a line of some length");
-    for (const char c : line) {
-      must(static_cast<unsigned char>(c) >= 0x20 && c != 0x7F, "a refusal holds no control byte");
-    }
+    must(obeys_nothing(line), "a refusal holds no control byte");
     return false;
   }
 }
