@@ -1,6 +1,7 @@
 #include "executor/recorded/named.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "executor/faults/fault_table.h"
 #include "lcmtypes/tenon/run_setup_t.hpp"
@@ -18,6 +19,12 @@ void check_named(const std::string& file, const std::string& task, const std::st
   throw InputError(file + ": is of a plan of '" + task + "' from start '" + start +
                    "', the plan given is of '" + plan.task_name + "' from start '" +
                    plan.start_name + "'; give the plan that was executed");
+}
+
+bool is_pose(const Vector3& position_m, const Eigen::Quaterniond& orientation) {
+  constexpr double kFarthest_m = 1e6;
+  const double length = orientation.norm();
+  return (position_m.array().abs() <= kFarthest_m).all() && std::isfinite(length) && length > 0.5;
 }
 
 bool is_fault(EndReason reason) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "executor/faults/end_reason.h"
+#include "shared/math/pose.h"
 #include "shared/plan/plan.h"
 #include "shared/run/recorded_run.h"
 
@@ -19,6 +20,10 @@ namespace tenon::executor {
 /// @throws InputError unless task and start are the plan's
 void check_named(const std::string& file, const std::string& task, const std::string& start,
                  const Plan& plan);
+
+/// Whether a tool can have been there: numbers within a thousand kilometres, and an orientation
+/// that has a length. Reckoning with such poses stays within what floats hold.
+[[nodiscard]] bool is_pose(const Vector3& position_m, const Eigen::Quaterniond& orientation);
 
 /// Whether a run that ends so went wrong: it was neither done nor stopped by the user.
 [[nodiscard]] bool is_fault(EndReason reason);

@@ -86,13 +86,13 @@ Successor successor_of(const Keys& keys) {
 Pose pose_of(const Keys& keys) {
   const std::vector<double> p = keys.numbers("position_m", 3);
   const std::vector<double> q = keys.numbers("orientation_wxyz", 4);
+  const Vector3 position_m(p.data());
   const Eigen::Quaterniond orientation(q[0], q[1], q[2], q[3]);
-  // The length of numbers that are each a double may be none.
-  const double length = orientation.norm();
-  if (!std::isfinite(length) || length < 0.5) {
+  if (!is_pose(Vector3::Zero(), orientation)) {
     keys.refuse("orientation_wxyz", "must be a unit quaternion");
   }
-  return {Vector3(p.data()), orientation.normalized()};
+  if (!is_pose(position_m, orientation)) keys.refuse("position_m", "is where no tool can be");
+  return {position_m, orientation.normalized()};
 }
 
 RecordedStep step_of(const Keys& keys, const Plan& plan) {

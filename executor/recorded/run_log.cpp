@@ -31,8 +31,7 @@ constexpr std::size_t kCyclesMax = 4'500'000;
 std::array<float, 7> floats_of(const double (&position_m)[3], const double (&wxyz)[4]) {
   std::array<float, 7> pose = RecordedCycle::unknown<7>();
   const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  const bool finite = Vector3(position_m).allFinite() && std::isfinite(q.squaredNorm());
-  if (!finite || q.norm() < 0.5) return pose;
+  if (!is_pose(Vector3(position_m), q)) return pose;
   const Eigen::Quaterniond unit = q.normalized();
   for (std::size_t i = 0; i < 3; ++i) pose.at(i) = static_cast<float>(position_m[i]);
   pose[3] = static_cast<float>(unit.w());
@@ -212,11 +211,11 @@ void RunLog::take(const tenon::run_status_t& m) {
 void RunLog::take(const tenon::step_event_t& m) {
   const double* q = m.orientation_wxyz;
   const Eigen::Quaterniond orientation(q[0], q[1], q[2], q[3]);
-  const bool finite = Vector6(m.travelled).allFinite() && Vector3(m.position_m).allFinite() &&
-                      std::isfinite(orientation.norm()) && std::isfinite(m.duration_s) &&
-                      std::isfinite(m.peak_force_N);
+  const bool sound = Vector6(m.travelled).allFinite() &&
+                     is_pose(Vector3(m.position_m), orientation) && std::isfinite(m.duration_s) &&
+                     std::isfinite(m.peak_force_N);
   if (m.step < 0 || m.step >= static_cast<int>(plan_.steps.size()) || m.outcome < 0 ||
-      m.outcome >= static_cast<int>(kOutcomes.size()) || !finite || orientation.norm() < 0.5) {
+      m.outcome >= static_cast<int>(kOutcomes.size()) || !sound) {
     ++malformed_;
     return;
   }

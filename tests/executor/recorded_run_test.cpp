@@ -226,6 +226,8 @@ TEST_F(RecordedRunTest, AResultThatIsNoneOrOfAnotherPlanIsRefusedByKey) {
   // Each a number, all of them of no length.
   EXPECT_THAT(result_refusal(result_with("/steps/0/orientation_wxyz", {1e200, 0, 0, 1e200})),
               HasSubstr("orientation_wxyz must be a unit quaternion"));
+  EXPECT_THAT(result_refusal(result_with("/steps/0/position_m", {0.1, -1.7e308, 0.0})),
+              HasSubstr("steps[0].position_m is where no tool can be"));
 }
 
 }  // namespace

@@ -19,6 +19,13 @@ namespace {
 using namespace tenon;
 using fuzz::must;
 
+/// Where its tool ends is laid onto the goal by turning too.
+Plan made_plan() {
+  Plan plan = executor::touch_and_slide_plan();
+  plan.coordinates = 0x3F;
+  return plan;
+}
+
 void check(const RecordedRun& run, const Plan& plan) {
   must(!run.samples.empty() && run.cycles == run.samples.size(), "a log holds cycles");
   double before_s = -1.0;
@@ -60,7 +67,7 @@ void check(const executor::Exported& exported) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const fuzz::InputFolder folder;
-  static const Plan plan = executor::touch_and_slide_plan();
+  static const Plan plan = made_plan();
   const auto file = folder.put("run.lcmlog", fuzz::text_of(data, size));
   RecordedRun run;
   if (fuzz::accepted([&] { run = executor::read_run_log(file, plan); })) {
