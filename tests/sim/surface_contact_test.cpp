@@ -152,6 +152,34 @@ TEST(SurfaceContact, EdgesThatCrossTouchWhereTheyCross) {
   }
 }
 
+TEST(SurfaceContact, APegThatLiesAlongAWallAndBeyondItsRimIsPushedAwayFromTheWallAlone) {
+  // The peg's edges leave the wall at its rim, where the top is as near as the wall itself.
+  const Shape peg =
+      solid_shape("peg", extruded(tests::round_profile(0.01, 60), 0.06), at(0, 0, 0.03));
+  const Shape block = solid_shape("block", box_mesh({0.06, 0.06, 0.04}), at(0, 0, -0.02));
+  OdeWorld world;
+  CompliantTool tool(world, {});
+  Scene scene({peg}, {block});
+  scene.attach(tool.body());
+  Random random(13);
+  int rims = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3 turned_rad(4e-3 * (random.uniform() - 0.5), 4e-3 * (random.uniform() - 0.5),
+                             0.2 * (random.uniform() - 0.5));
+    tool.place(at(0.01 * random.uniform(), 0.03 + 0.01 - 3e-5 * random.uniform(),
+                  -0.01 + 0.002 * random.uniform(), turned_rad));
+    tool.show();
+    scene.moved_anywhere();
+    (void)scene.find_contacts(true);
+    for (const dContactGeom& point : scene.points()) {
+      EXPECT_GT(point.normal[1], 0.99) << i;
+      EXPECT_LT(std::abs(point.normal[2]), 0.01) << i;
+      rims += point.pos[2] > -1e-4;
+    }
+  }
+  EXPECT_GT(rims, 1000);
+}
+
 TEST(SurfaceContact, NothingIsForgottenOnTheWay) {
   const Shape peg =
       solid_shape("peg", extruded(tests::round_profile(0.01, 30), 0.06), at(0, 0, 0.03));

@@ -178,9 +178,13 @@ double SurfaceContact::look_at(Side& side, std::uint32_t index, const Pose& X_SE
     const Vector3 point_m = point_in(X_SE, from_m + foot.along * along_m);
     const Surface::Place at = side.surface->place(point_m, from.guess);
     if (at.distance_m <= std::min({stand.offset_m, from.distance_m, to.distance_m})) {
-      // Two edges part across both: the sides of the one add up to that direction.
+      // Two edges part across both: the sides of the one add up to that direction. Where both sides
+      // are as near, whichever is closer to that direction is left first.
       const Vector3 across = (slope_to * from.outwards - slope_from * to.outwards).normalized();
-      const double steep = across.dot(at.outwards);
+      double steep = across.dot(at.outwards);
+      if (std::abs(at.distance_m - foot.distance_m) < kEarly_m) {
+        steep = std::max({steep, across.dot(from.outwards), across.dot(to.outwards)});
+      }
       const bool edge = steep > kSteepMin;
       const double depth_m = stand.offset_m - at.distance_m;
       found_.push_back({held ? at.nearest_m : point_m, edge ? across : at.outwards,
