@@ -26,7 +26,8 @@ MoveParameters search_move(const Task& task, const Start& start,
 std::optional<MoveReach> reach_of_moves(const Task& task, const Start& start,
                                         const CellAssumptions& assumptions, const ArmReach& reach,
                                         std::string& why) {
-  const Plan draft = one_step(task, start, assumptions);
+  Plan draft = one_step(task, start, assumptions);
+  draft.check_places = places_are_told(task.coordinates);
   const auto place = reach.start(draft, why);
   if (!place) {
     why = "the arm cannot hold start '" + start.name + "': " + why;
@@ -38,6 +39,7 @@ std::optional<MoveReach> reach_of_moves(const Task& task, const Start& start,
   }
   const EnvelopeMargins margins = envelope_margins(draft, task);
   MoveReach::Parameters parameters;
+  parameters.start = start.pose;
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(task.coordinates, axis)) continue;
     parameters.margins[axis] = axis < 3 ? margins.position_m : margins.angle_rad;

@@ -60,13 +60,19 @@ StepReach reach_from(const ReachBox& begin, ContactSignature before, const Plan&
     if (rule.successor == kSuccessorFail) continue;
     const Envelope& seen = rule.envelope;
     StepReach::End end{rule.successor, {}, {}};
+    end.contacts = plan.check_envelopes ? seen.possible : kAllContacts;
+    if (plan.check_places) {
+      end.box = {seen.place_min, seen.place_max};
+      reach.swept.include(end.box);
+      reach.ends.push_back(end);
+      continue;
+    }
     ReachBox travel{seen.travelled_min, seen.travelled_max};
     if (!plan.check_envelopes) {
       travel = {step.displacement.cwiseMin(0.0), step.displacement.cwiseMax(0.0)};
     }
     travel = as_turned(travel, turned_rad(plan, step, begin));
     end.box = begin.moved(travel.low, travel.high);
-    end.contacts = plan.check_envelopes ? seen.possible : kAllContacts;
     reach.swept.include(end.box);
     reach.ends.push_back(end);
   }

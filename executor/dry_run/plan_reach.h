@@ -1,6 +1,7 @@
 #pragma once
 // Where a plan's tool can be, as boxes of displacements from the plan's start: every step's box
-// grows out of its predecessors' by the envelopes that validation saw. Set-up code; allocates.
+// grows out of its predecessors' by the envelopes that validation saw, or is where validation saw
+// it, in a plan that says so. Set-up code; allocates.
 
 #include <cstdint>
 #include <optional>

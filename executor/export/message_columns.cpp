@@ -69,7 +69,7 @@ const char* outcome_text(int outcome) {
 }
 
 std::string deviation_text(const Step& m) {
-  if (m.deviation <= 0 || m.deviation > static_cast<int>(Deviation::kContactUnforeseen)) return {};
+  if (m.deviation <= 0 || m.deviation > static_cast<int>(Deviation::kPlaceOutside)) return {};
   const int index = m.deviation_index < ContactSignature::kBits ? m.deviation_index : -1;
   return describe(
       {static_cast<Successor>(m.successor), static_cast<Deviation>(m.deviation), index});

@@ -18,6 +18,7 @@ PlanRunner::PlanRunner(const Plan& plan) : plan_(plan) {
 GuardedMove::Output PlanRunner::update(const GuardedMove::Input& input) {
   move_started_ = false;
   if (status_ != Status::kRunning) return output_;
+  if (!first_) first_ = input.pose;
   if (begin_next_) {
     begin_next_ = false;
     step_ = next_;
@@ -41,7 +42,7 @@ void PlanRunner::finish(const GuardedMove::Result& result) {
   report.commanded = plan_.steps[step_].displacement;
   report.signature_before = before_;
   report.result = result;
-  report.transition = transition(plan_, step_, result);
+  report.transition = transition(plan_, step_, *first_, result);
   report.start_ns = start_ns_;
 
   const Successor successor = report.transition.successor;

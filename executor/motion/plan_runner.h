@@ -65,6 +65,7 @@ class PlanRunner {
   std::size_t step_ = 0;
   std::size_t next_ = 0;
   std::optional<GuardedMove> move_;
+  std::optional<Pose> first_;  ///< where the tool stood as the plan began
   bool begin_next_ = true;
   bool move_started_ = false;
   std::int64_t start_ns_ = 0;

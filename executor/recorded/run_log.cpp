@@ -225,7 +225,7 @@ void RunLog::take(const tenon::step_event_t& m) {
   step.step = static_cast<std::size_t>(m.step);
   step.outcome = static_cast<Outcome>(m.outcome);
   step.successor = static_cast<Successor>(m.successor);
-  if (m.deviation > 0 && m.deviation <= static_cast<int>(Deviation::kContactUnforeseen)) {
+  if (m.deviation > 0 && m.deviation <= static_cast<int>(Deviation::kPlaceOutside)) {
     const int index = m.deviation_index < ContactSignature::kBits ? m.deviation_index : -1;
     const auto deviation = static_cast<Deviation>(m.deviation);
     step.deviation = describe(with_travel({step.successor, deviation, index}, m.travelled,

@@ -276,13 +276,14 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
   return "?";
 }
 
-std::string travel_outside(const Transition& t) {
+std::string outside(const char* what, const Transition& t) {
   if (t.travelled_min >= t.travelled_max) {
-    return format("travelled along %s outside what validation saw", axis_name(t.index));
+    return format("%s along %s outside what validation saw", what, axis_name(t.index));
   }
-  return format("travelled %.4g %s along %s where validation saw %.4g to %.4g",
-                shown(t.travelled, t.index), t.index < 3 ? "mm" : "deg", axis_name(t.index),
-                shown(t.travelled_min, t.index), shown(t.travelled_max, t.index));
+  return std::string(what) + format(" %.4g %s along %s where validation saw %.4g to %.4g",
+                                    shown(t.travelled, t.index), t.index < 3 ? "mm" : "deg",
+                                    axis_name(t.index), shown(t.travelled_min, t.index),
+                                    shown(t.travelled_max, t.index));
 }
 
 }  // namespace
@@ -295,7 +296,9 @@ std::string describe(const Transition& transition) {
     case Deviation::kUnexpectedOutcome:
       return "the plan has no way on from this outcome";
     case Deviation::kTravelOutside:
-      return travel_outside(transition);
+      return outside("travelled", transition);
+    case Deviation::kPlaceOutside:
+      return outside("ended, from the start,", transition);
     case Deviation::kContactMissing:
       return "contact " + tenon::to_string(ContactSignature{bit}) +
              " is missing, validation always had it";

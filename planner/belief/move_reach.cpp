@@ -31,9 +31,10 @@ Step MoveReach::step_of(const Vector6& displacement, const Travel& travel) const
   rule.successor = kSuccessorDone;
   rule.envelope.possible = kAllContacts;
   for (int axis = 0; axis < 6; ++axis) {
-    const double least = travel.least[axis];
-    const double most = travel.most[axis];
-    const double further = 0.5 * (parameters_.draws_over_particles - 1.0) * (most - least);
+    const double least = travel.way.least[axis];
+    const double most = travel.way.most[axis];
+    const double beyond = 0.5 * (parameters_.draws_over_particles - 1.0);
+    const double further = beyond * (most - least);
     double low = least - further;
     double high = most + further;
     const double told = displacement[axis];
@@ -43,6 +44,11 @@ Step MoveReach::step_of(const Vector6& displacement, const Travel& travel) const
     }
     rule.envelope.travelled_min[axis] = low - parameters_.margins[axis];
     rule.envelope.travelled_max[axis] = high + parameters_.margins[axis];
+    if (parameters_.margins[axis] == 0.0) continue;  // off the coordinates, where no place is told
+    const Range& place = travel.place;
+    const double room = beyond * (place.most[axis] - place.least[axis]) + parameters_.margins[axis];
+    rule.envelope.place_min[axis] = place.least[axis] - room;
+    rule.envelope.place_max[axis] = place.most[axis] + room;
   }
   return step;
 }

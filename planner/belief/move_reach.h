@@ -17,19 +17,25 @@ namespace tenon::planner {
 class MoveReach {
  public:
   struct Parameters {
+    Pose start;                         ///< of the plan: what places are told from
     Vector6 margins = Vector6::Zero();  ///< of an envelope, m and rad; 0 off the coordinates
     double draws_over_particles = 1.0;  ///< how much farther out draws are than particles, >= 1
   };
 
-  /// How far the particles travel, by axis of the move, m and rad.
-  struct Travel {
+  struct Range {
     Vector6 least = Vector6::Zero();
     Vector6 most = Vector6::Zero();
 
-    void include(const Vector6& travelled) {
-      least = least.cwiseMin(travelled);
-      most = most.cwiseMax(travelled);
+    void include(const Vector6& value) {
+      least = least.cwiseMin(value);
+      most = most.cwiseMax(value);
     }
+  };
+
+  /// Of the particles, m and rad.
+  struct Travel {
+    Range way;    ///< by axis of the move
+    Range place;  ///< where they end, from the plan's start
   };
 
   MoveReach(std::shared_ptr<const ArmPlace> start, const Parameters& parameters)
@@ -37,6 +43,10 @@ class MoveReach {
 
   /// Where the plan begins.
   [[nodiscard]] const std::shared_ptr<const ArmPlace>& start() const { return start_; }
+  /// A pose as places are told.
+  [[nodiscard]] Vector6 place_at(const Pose& tool) const {
+    return displacement_between(parameters_.start, tool);
+  }
 
   /// Where the arm is with a belief; of one that was put somewhere, at its mean. Null: it cannot be
   /// there.

@@ -68,10 +68,12 @@ bool SuccessorEngine::carry_arm(const ArmPlace& from, const Belief& belief,
                                 Belief& successor) {
   ContactSignature held;
   for (const Particle& particle : belief.particles) held.bits |= particle.signature.bits;
-  MoveReach::Travel travel{(*ends[0])->travelled, (*ends[0])->travelled};
+  const Vector6 first = reach_->place_at((*ends[0])->particle.pose);
+  MoveReach::Travel travel{{(*ends[0])->travelled, (*ends[0])->travelled}, {first, first}};
   bool touches = false;
   for (std::size_t j = 0; j < belief.particles.size(); ++j) {
-    travel.include((*ends[j])->travelled);
+    travel.way.include((*ends[j])->travelled);
+    travel.place.include(reach_->place_at((*ends[j])->particle.pose));
     touches = touches || (*ends[j])->particle.signature.count() > 0;
   }
   successor.arm = reach_->after(from, primitive.displacement, held, travel, touches);

@@ -164,8 +164,12 @@ namespace {
 void check_same_task(const Plan& plan, const Task& task) {
   std::vector<Vector6> displacements;
   for (const Step& step : plan.steps) displacements.push_back(step.displacement);
-  const Plan drafted = draft_plan(task, start_of(plan, task),
-                                  {plan.contact_stiffness_Npm, plan.latency_max_s}, displacements);
+  Plan drafted = draft_plan(task, start_of(plan, task),
+                            {plan.contact_stiffness_Npm, plan.latency_max_s}, displacements);
+  drafted.parameter_sets.resize(plan.parameter_sets.size(), drafted.parameter_sets.front());
+  for (std::size_t i = 0; i < plan.parameter_sets.size(); ++i) {
+    drafted.parameter_sets[i].aligns = plan.parameter_sets[i].aligns;
+  }
   const auto demand = [&](bool same, const char* what) {
     if (same) return;
     throw InputError(std::string("plan: its ") + what + " is not that of task '" + task.name +

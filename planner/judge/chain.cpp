@@ -25,6 +25,12 @@ std::string describe(const Transition& transition, const GuardedMove::Result& mo
                               transition.index < 3 ? "mm" : "deg", axis_name(transition.index),
                               shown(transition.travelled_min, transition.index),
                               shown(transition.travelled_max, transition.index));
+    case Deviation::kPlaceOutside:
+      return outcome + format(", ended %.2f %s from the start along %s, must be %.2f to %.2f",
+                              shown(transition.travelled, transition.index),
+                              transition.index < 3 ? "mm" : "deg", axis_name(transition.index),
+                              shown(transition.travelled_min, transition.index),
+                              shown(transition.travelled_max, transition.index));
     case Deviation::kContactMissing:
       return outcome + ", contact " + bit_name(transition.index) + " is missing";
     case Deviation::kContactUnforeseen:
@@ -47,7 +53,7 @@ Chain run_chain(Rollout& rollout, const Plan& plan, const Particle& start, std::
     }
     chain.moves.push_back(result.move);
     chain.touching.push_back(result.touching);
-    const Transition next = transition(plan, step, result.move);
+    const Transition next = transition(plan, step, start.pose, result.move);
     if (next.successor == kSuccessorFail) {
       chain.failure = describe(next, result.move);
       return chain;
@@ -63,7 +69,8 @@ Chain run_chain(Rollout& rollout, const Plan& plan, const Particle& start, std::
 
 std::size_t first_deviation(const Plan& plan, const Chain& chain) {
   for (std::size_t i = 0; i < chain.moves.size(); ++i) {
-    if (transition(plan, chain.steps[i], chain.moves[i]).successor == kSuccessorFail) return i;
+    const Transition next = transition(plan, chain.steps[i], chain.start.pose, chain.moves[i]);
+    if (next.successor == kSuccessorFail) return i;
   }
   return chain.moves.size();
 }

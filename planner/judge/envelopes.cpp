@@ -14,34 +14,41 @@ struct Seen {
   bool any = false;
   Envelope envelope;
 
-  void add(const GuardedMove::Result& move) {
+  /// @param place from where the plan began
+  void add(const GuardedMove::Result& move, const Vector6& place) {
     if (!any) {
-      envelope = {move.travelled, move.travelled, move.signature, move.signature};
+      envelope = {move.travelled, move.travelled, place, place, move.signature, move.signature};
       any = true;
       return;
     }
-    envelope.travelled_min = envelope.travelled_min.cwiseMin(move.travelled);
-    envelope.travelled_max = envelope.travelled_max.cwiseMax(move.travelled);
+    span(move.travelled, place);
     envelope.always.bits &= move.signature.bits;
     envelope.possible.bits |= move.signature.bits;
   }
 
-  void span(const Vector6& travelled) {
+  void span(const Vector6& travelled, const Vector6& place) {
     envelope.travelled_min = envelope.travelled_min.cwiseMin(travelled);
     envelope.travelled_max = envelope.travelled_max.cwiseMax(travelled);
+    envelope.place_min = envelope.place_min.cwiseMin(place);
+    envelope.place_max = envelope.place_max.cwiseMax(place);
   }
 };
 
-Envelope widened(Envelope envelope, const EnvelopeMargins& margins, CoordinateMask coordinates) {
+void widen(Vector6& min, Vector6& max, const EnvelopeMargins& margins, CoordinateMask coordinates) {
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(coordinates, axis)) {
-      envelope.travelled_min[axis] = envelope.travelled_max[axis] = 0.0;
+      min[axis] = max[axis] = 0.0;
       continue;
     }
     const double margin = axis < 3 ? margins.position_m : margins.angle_rad;
-    envelope.travelled_min[axis] -= margin;
-    envelope.travelled_max[axis] += margin;
+    min[axis] -= margin;
+    max[axis] += margin;
   }
+}
+
+Envelope widened(Envelope envelope, const EnvelopeMargins& margins, const Plan& plan) {
+  widen(envelope.travelled_min, envelope.travelled_max, margins, plan.coordinates);
+  widen(envelope.place_min, envelope.place_max, margins, plan.check_places ? plan.coordinates : 0);
   return envelope;
 }
 
@@ -52,8 +59,9 @@ void close_gap(SeenByOutcome& seen) {
   const Seen& reached = seen[static_cast<std::size_t>(Outcome::kReached)];
   Seen& contact = seen[static_cast<std::size_t>(Outcome::kContact)];
   if (!reached.any || !contact.any) return;
-  contact.span(reached.envelope.travelled_min);
-  contact.span(reached.envelope.travelled_max);
+  const Envelope& far = reached.envelope;
+  contact.span(far.travelled_min, far.place_min);
+  contact.span(far.travelled_max, far.place_max);
 }
 
 }  // namespace
@@ -67,8 +75,9 @@ EnvelopeMargins envelope_margins(const Plan& plan, const Task& task) {
     const bool sensed = ((set.sensed_axes & plan.compliance.compliant_axes) >> 3) != 0;
     const double keep_Nm = sensed ? set.thresholds.torque_keep_Nm : 0.0;
     const double friction_rad = task.friction.high * keep_Nm / plan.compliance.stiffness_Nmpr;
-    // A torque that counts for none turns a pressed tool as far as the spring gives.
-    const double give_rad = set.thresholds.torque_off_Nm / plan.compliance.stiffness_Nmpr;
+    // A torque that counts for none turns a pressed tool as far as the spring gives, and what
+    // sensor and frames are wrong by may hide as much again.
+    const double give_rad = 2.0 * set.thresholds.torque_off_Nm / plan.compliance.stiffness_Nmpr;
     margins.position_m = std::max(
         margins.position_m, kSensor_m + set.speeds.contact_mps * plan.latency_max_s + friction_m);
     margins.angle_rad =
@@ -82,19 +91,22 @@ Plan with_envelopes(const Plan& draft, const Task& task, std::span<const Chain> 
   std::vector<SeenByOutcome> seen(draft.steps.size());
   for (const Chain& chain : chains) {
     for (std::size_t i = 0; i < chain.moves.size(); ++i) {
-      seen[chain.steps[i]][static_cast<std::size_t>(chain.moves[i].outcome)].add(chain.moves[i]);
+      const GuardedMove::Result& move = chain.moves[i];
+      const Vector6 place = displacement_between(chain.start.pose, move.pose);
+      seen[chain.steps[i]][static_cast<std::size_t>(move.outcome)].add(move, place);
     }
   }
   const EnvelopeMargins margins = envelope_margins(draft, task);
   Plan plan = draft;
   plan.check_envelopes = true;
+  plan.check_places = places_are_told(plan.coordinates);
   for (std::size_t step = 0; step < plan.steps.size(); ++step) {
     close_gap(seen[step]);
     for (std::size_t outcome = 0; outcome < kOutcomes.size(); ++outcome) {
       OutcomeRule& rule = plan.steps[step].outcomes[outcome];
       const Seen& one = seen[step][outcome];
       if (one.any) {
-        rule.envelope = widened(one.envelope, margins, plan.coordinates);
+        rule.envelope = widened(one.envelope, margins, plan);
       } else {
         rule = {};
       }

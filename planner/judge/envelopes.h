@@ -15,13 +15,20 @@ struct EnvelopeMargins {
   double angle_rad = 0.0;
 };
 
+/// Whether a plan with these coordinates says where its steps end: those with rotations do.
+[[nodiscard]] constexpr bool places_are_told(CoordinateMask coordinates) {
+  return coordinates >> 3 != 0;
+}
+
 /// kSensor_m for encoders and calibration, contact speed times latency for a contact that is
 /// noticed late, and F_keep mu_max / K for what friction keeps of a slide; the same for rotations.
 [[nodiscard]] EnvelopeMargins envelope_margins(const Plan& plan, const Task& task);
 
 /// `draft` with rules from chains that all ended at the goal: every outcome that a step had leads
 /// on, every other fails; a range spans what was seen and the margins. Where a step was both
-/// stopped by a contact and not, a contact may come anywhere up to the whole displacement.
+/// stopped by a contact and not, a contact may come anywhere up to the whole displacement. Plans
+/// with rotations check places too: how a part is turned shifts all moves that follow, and what
+/// travels allow adds up to far more than what is seen.
 [[nodiscard]] Plan with_envelopes(const Plan& draft, const Task& task,
                                   std::span<const Chain> chains);
 

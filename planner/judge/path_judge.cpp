@@ -6,6 +6,7 @@
 #include "planner/judge/approach_speeds.h"
 #include "planner/judge/envelopes.h"
 #include "planner/judge/last_move.h"
+#include "planner/judge/plain_touches.h"
 #include "shared/plan/codec.h"
 
 namespace tenon::planner {
@@ -40,6 +41,14 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements) {
   if (!at_contact_speed.holds()) return refutation_of(at_contact_speed);
   if (slow.method != PlanMethod::kMha) {
     return estimated(slow, std::move(at_contact_speed), extremes_of(slow));
+  }
+  const std::vector<Chain>& aligned = at_contact_speed.runs.front().chains;
+  if (auto plain = with_plain_touches(slow, aligned)) {
+    Certification as_plain = certified(*plain);
+    if (as_plain.holds()) {
+      slow = std::move(*plain);
+      at_contact_speed = std::move(as_plain);
+    }
   }
 
   std::vector<double> distances_m =

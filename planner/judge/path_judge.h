@@ -1,7 +1,8 @@
 #pragma once
-// Whether a path becomes a plan: certified from its very bytes, brought to approach speed where
-// that holds, its last move centred on the goal, validated by draws, and given envelopes. What does
-// not hold comes back as a refutation; what to learn from it is not decided here.
+// Whether a path becomes a plan: certified from its very bytes, its touches plain and its approach
+// fast where that holds, its last move centred on the goal, validated by draws, and given
+// envelopes. What does not hold comes back as a refutation; what to learn from it is not decided
+// here.
 
 #include <cstddef>
 #include <cstdint>

@@ -98,8 +98,8 @@ std::vector<Draw> decided_by(const Plan& plan, const Task& task, std::span<const
     Chain& chain = draw.chain;
     const std::size_t end = first_deviation(plan, chain);
     if (end < chain.moves.size()) {
-      chain.failure =
-          describe(transition(plan, chain.steps[end], chain.moves[end]), chain.moves[end]);
+      chain.failure = describe(
+          transition(plan, chain.steps[end], chain.start.pose, chain.moves[end]), chain.moves[end]);
       chain.done = false;
       chain.moves.resize(end + 1);
       chain.steps.resize(end + 1);

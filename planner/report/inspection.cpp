@@ -27,6 +27,8 @@ Json json_of(const OutcomeRule& rule) {
   }
   json["travelled_min"] = json_of(rule.envelope.travelled_min);
   json["travelled_max"] = json_of(rule.envelope.travelled_max);
+  json["place_min"] = json_of(rule.envelope.place_min);
+  json["place_max"] = json_of(rule.envelope.place_max);
   json["always"] = to_string(rule.envelope.always);
   json["possible"] = to_string(rule.envelope.possible);
   return json;
@@ -60,7 +62,10 @@ Json json_of(const ParameterSet& set) {
           {"torque_off_Nm", t.torque_off_Nm},
           {"debounce_us", t.debounce_us},
           {"timeout_us", set.timeout_us},
-          {"trigger_mask", to_string(set.trigger_mask)}};
+          {"trigger_mask", to_string(set.trigger_mask)},
+          {"sensed_axes", axis_list(set.sensed_axes)},
+          {"carried_axes", set.carried_axes},
+          {"aligns", set.aligns}};
 }
 
 }  // namespace

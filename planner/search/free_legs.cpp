@@ -100,9 +100,11 @@ bool FreeLegs::in_reach(const BeliefSummary& belief, const Legs& legs, const Arm
   std::shared_ptr<const ArmPlace> place;
   for (const Vector6& leg : legs) {
     const Vector6 told = in_move_axes(task_, at, leg);
-    place = reach_->after(place ? *place : *arm, told, {}, {told, told}, false);
-    if (!place) return false;
     at = displaced(at, leg);
+    const Vector6 end = reach_->place_at(at);
+    const MoveReach::Travel travel{{told, told}, {end - belief.spread, end + belief.spread}};
+    place = reach_->after(place ? *place : *arm, told, {}, travel, false);
+    if (!place) return false;
   }
   return true;
 }

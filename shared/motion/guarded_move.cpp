@@ -56,6 +56,7 @@ GuardedMove::GuardedMove(const MoveParameters& parameters, ContactSignature sign
     : parameters_(parameters),
       held_(held),
       rotates_(parameters.compliance.compliant_axes >> 3 != 0),
+      aligns_(rotates_ && parameters.aligns),
       detector_(parameters.thresholds,
                 parameters.compliance.compliant_axes & parameters.sensed_axes, signature),
       initial_(signature),
@@ -249,7 +250,7 @@ void GuardedMove::enter_settling(const Input& input, Outcome outcome) {
   decided_ns_ = settling_since_ns_ = input.time_ns;
   settling_samples_ = 0;
   pressing_ = detector_.signature();
-  aligning_ = rotates_ && outcome == Outcome::kContact;
+  aligning_ = aligns_ && outcome == Outcome::kContact;
   setpoint_.pose = resting(input.pose, pressing_);
   setpoint_.velocity.setZero();
   setpoint_.acceleration.setZero();
@@ -269,7 +270,7 @@ void GuardedMove::settle(const Input& input) {
     pressing_ = detector_.signature();
     setpoint_.pose = resting(input.pose, pressing_);
   }
-  if (rotates_ && pressing_.bits != 0) creep(input.pose);
+  if (aligns_ && pressing_.bits != 0) creep(input.pose);
   const std::int64_t since_ns = input.time_ns - settling_since_ns_;
   const bool sampled =
       settling_samples_ > kSettlingExtraSamples &&
@@ -278,8 +279,8 @@ void GuardedMove::settle(const Input& input) {
   const bool at_rest = recent_.slower_than(kRestSpeed_mps, kRestSpeed_radps);
   const bool pressed_long = !aligning_ || since_ns >= kCreepIn_ns;
   const bool sure = sampled && pressed_long && at_rest && detector_.weak().bits == 0;
-  if (rotates_ && since_ns >= kSettlingMax_ns) detector_.drop_weak();
-  if (!sure && since_ns < (rotates_ ? kAligningMax_ns : kSettlingMax_ns)) return;
+  if (aligns_ && since_ns >= kSettlingMax_ns) detector_.drop_weak();
+  if (!sure && since_ns < (aligns_ ? kAligningMax_ns : kSettlingMax_ns)) return;
   if (!aligning_) return finish(input);
   // With less force the spring would turn the tool back from what has turned it.
   aligning_ = false;

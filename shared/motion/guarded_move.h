@@ -127,6 +127,7 @@ class GuardedMove {
   std::optional<Eigen::Quaterniond> held_;  ///< as the move begins, in its own axes
   std::optional<Eigen::Quaterniond> axes_;  ///< the move's, in the task frame, where they differ
   bool rotates_ = false;                    ///< something may turn the tool
+  bool aligns_ = false;                     ///< what it meets is to
   ContactDetector detector_;
   ContactSignature initial_;
   /// Bits that the move pushes away from: they neither trigger by going nor by coming back.

@@ -89,6 +89,10 @@ struct MoveParameters {
   /// Bit a: the contact bits of this axis are decided from the wrench. Along the others something
   /// may push, below what the sensor resolves; nothing is concluded from it.
   std::uint8_t sensed_axes = 0x3F;
+  /// Where rotations yield: a contact that ends the move is pressed until the tool lies flat on
+  /// what it met. Otherwise it is held as it was met, and the tool turns no farther than its spring
+  /// gives.
+  bool aligns = true;
   /// Set: the move's axes have turned with the tool as far as it is turned away from this
   /// orientation as the move begins. A tool that has aligned with a face so moves along that face.
   std::optional<Eigen::Quaterniond> carried_from;

@@ -80,13 +80,25 @@ ParameterSet read_parameter_set(FieldReader& in, double force_limit_N, std::uint
   t.debounce_us = in.whole<std::uint32_t>("debounce_us", 0, kDebounceMax_us);
   set.timeout_us = in.whole<std::uint32_t>("timeout_us", 1, kTimeoutMax_us);
   set.trigger_mask = in.signature("trigger_mask");
-  if (version != kVersionOfRotation) return set;
+  if (version < kVersionOfRotation) return set;
   set.sensed_axes = in.whole<std::uint8_t>("sensed_axes", 0, 0x3F);
-  set.carried_axes = in.whole<std::uint8_t>("axes", 0, kFlagCarriedAxes) != 0;
+  const auto flags = in.whole<std::uint8_t>("axes", 0, kSetFlagsMax);
+  set.carried_axes = (flags & kFlagCarriedAxes) != 0;
+  set.aligns = (flags & kFlagPlainTouches) == 0;
   return set;
 }
 
-OutcomeRule read_outcome(FieldReader& reader, CoordinateMask coordinates, std::size_t step,
+void read_range(FieldReader& reader, CoordinateMask coordinates, const char* min_name,
+                const char* max_name, Vector6& min, Vector6& max) {
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(coordinates, axis)) continue;
+    min[axis] = reader.f32(min_name, kTravel);
+    max[axis] = reader.f32(max_name, kTravel);
+    if (min[axis] > max[axis]) reader.fail(PlanError::kRange, max_name);
+  }
+}
+
+OutcomeRule read_outcome(FieldReader& reader, const Plan& plan, std::size_t step,
                          std::size_t steps) {
   OutcomeRule rule;
   rule.successor = reader.raw<std::uint8_t>("successor");
@@ -100,13 +112,11 @@ OutcomeRule read_outcome(FieldReader& reader, CoordinateMask coordinates, std::s
   if ((envelope.always.bits & ~envelope.possible.bits) != 0) {
     reader.fail(PlanError::kRange, "possible");
   }
-  for (int axis = 0; axis < 6; ++axis) {
-    if (!has(coordinates, axis)) continue;
-    envelope.travelled_min[axis] = reader.f32("travelled_min", kTravel);
-    envelope.travelled_max[axis] = reader.f32("travelled_max", kTravel);
-    if (envelope.travelled_min[axis] > envelope.travelled_max[axis]) {
-      reader.fail(PlanError::kRange, "travelled_max");
-    }
+  read_range(reader, plan.coordinates, "travelled_min", "travelled_max", envelope.travelled_min,
+             envelope.travelled_max);
+  if (plan.check_places) {
+    read_range(reader, plan.coordinates, "place_min", "place_max", envelope.place_min,
+               envelope.place_max);
   }
   return rule;
 }
@@ -124,7 +134,7 @@ Step read_step(FieldReader& reader, const Plan& plan, std::size_t index, std::si
   }
   for (std::size_t outcome = 0; outcome < kOutcomes.size(); ++outcome) {
     if ((outcomes >> outcome & 1U) == 0) continue;
-    step.outcomes[outcome] = read_outcome(reader, plan.coordinates, index, steps);
+    step.outcomes[outcome] = read_outcome(reader, plan, index, steps);
   }
   return step;
 }
@@ -139,7 +149,7 @@ DecodedPlan check_frame(std::span<const std::uint8_t> bytes) {
   }
   if (load_le<std::uint32_t>(bytes) != kMagic) return refused(PlanError::kMagic, 0, "magic");
   const auto version = load_le<std::uint16_t>(bytes.subspan(4));
-  if (version != kVersion && version != kVersionOfRotation) {
+  if (version < kVersion || version > kVersionOfPlaces) {
     return refused(PlanError::kVersion, 4, "version");
   }
   if (load_le<std::uint32_t>(bytes.subspan(8)) != bytes.size()) {
@@ -159,10 +169,18 @@ struct Counts {
 };
 Counts read_header(FieldReader& in, Plan& plan) {
   (void)in.raw<std::uint32_t>("magic");
-  (void)in.raw<std::uint16_t>("version");
-  const auto flags = in.whole<std::uint8_t>("flags", 0, kFlagsMax);
+  const auto version = in.raw<std::uint16_t>("version");
+  const auto flags = in.raw<std::uint8_t>("flags");
+  plan.check_places = version == kVersionOfPlaces;
+  const auto others = static_cast<std::uint8_t>(flags & ~kFlagCheckPlaces);
+  const std::uint8_t asked = kFlagCheckPlaces | kFlagCheckEnvelopes;
+  if (others > kFlagsMax ||
+      (flags & kFlagCheckPlaces) != (plan.check_places ? kFlagCheckPlaces : 0) ||
+      (plan.check_places && (flags & asked) != asked)) {
+    in.fail(PlanError::kRange, "flags");
+  }
   plan.check_envelopes = (flags & kFlagCheckEnvelopes) != 0;
-  plan.method = static_cast<PlanMethod>(flags >> kMethodShift);
+  plan.method = static_cast<PlanMethod>(others >> kMethodShift);
   plan.coordinates = in.whole<std::uint8_t>("coordinates", 1, 0x3F);
   (void)in.raw<std::uint32_t>("length");
   plan.task_hash = in.raw<std::uint64_t>("task_hash");
@@ -199,7 +217,7 @@ const char* to_string(PlanError error) {
     case PlanError::kMagic:
       return "not a plan file";
     case PlanError::kVersion:
-      return "another version of the format (this program reads versions 1 and 2)";
+      return "another version of the format (this program reads versions 1 to 3)";
     case PlanError::kLength:
       return "the length in the header is not the file's: cut off or appended to";
     case PlanError::kChecksum:

@@ -36,11 +36,13 @@ void write_text(ByteWriter& out, const std::string& text) {
 
 std::uint8_t flags_of(const Plan& plan) {
   const unsigned method = static_cast<unsigned>(plan.method) << kMethodShift;
-  return static_cast<std::uint8_t>(method | (plan.check_envelopes ? kFlagCheckEnvelopes : 0U));
+  return static_cast<std::uint8_t>(method | (plan.check_envelopes ? kFlagCheckEnvelopes : 0U) |
+                                   (plan.check_places ? kFlagCheckPlaces : 0U));
 }
 
 /// The lowest that can hold the plan, so that a plan has one encoding.
 std::uint16_t version_of(const Plan& plan) {
+  if (plan.check_places) return kVersionOfPlaces;
   const auto& sets = plan.parameter_sets;
   return std::any_of(sets.begin(), sets.end(), has_rotation) ? kVersionOfRotation : kVersion;
 }
@@ -86,12 +88,23 @@ void write_parameter_set(ByteWriter& out, const ParameterSet& set, std::uint16_t
   out.write(t.debounce_us);
   out.write(set.timeout_us);
   out.write(set.trigger_mask.bits);
-  if (version != kVersionOfRotation) return;
+  if (version < kVersionOfRotation) return;
   out.write(set.sensed_axes);
-  out.write(static_cast<std::uint8_t>(set.carried_axes ? kFlagCarriedAxes : 0));
+  out.write(static_cast<std::uint8_t>((set.carried_axes ? kFlagCarriedAxes : 0) |
+                                      (set.aligns ? 0 : kFlagPlainTouches)));
 }
 
-void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates) {
+void write_range(ByteWriter& out, const Vector6& min, const Vector6& max,
+                 CoordinateMask coordinates) {
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(coordinates, axis)) continue;
+    out.write(f32_down(min[axis]));
+    out.write(f32_up(max[axis]));
+  }
+}
+
+void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates,
+                std::uint16_t version) {
   unsigned outcomes = 0;
   for (std::size_t i = 0; i < kOutcomes.size(); ++i) {
     if (step.outcomes[i].successor != kSuccessorFail) outcomes |= 1U << i;
@@ -108,21 +121,21 @@ void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates) {
     out.write(rule.successor);
     out.write(envelope.always.bits);
     out.write(envelope.possible.bits);
-    for (int axis = 0; axis < 6; ++axis) {
-      if (!has(coordinates, axis)) continue;
-      out.write(f32_down(envelope.travelled_min[axis]));
-      out.write(f32_up(envelope.travelled_max[axis]));
+    write_range(out, envelope.travelled_min, envelope.travelled_max, coordinates);
+    if (version == kVersionOfPlaces) {
+      write_range(out, envelope.place_min, envelope.place_max, coordinates);
     }
   }
 }
 
 std::size_t encoded_size(const Plan& plan) {
+  const std::uint16_t version = version_of(plan);
   std::size_t size = kHeaderSize + plan.task_name.size() + plan.start_name.size() +
-                     set_size(version_of(plan)) * plan.parameter_sets.size() + kChecksumSize;
+                     set_size(version) * plan.parameter_sets.size() + kChecksumSize;
   for (const Step& step : plan.steps) {
     size += step_size(plan.coordinates);
     for (const OutcomeRule& rule : step.outcomes) {
-      if (rule.successor != kSuccessorFail) size += outcome_size(plan.coordinates);
+      if (rule.successor != kSuccessorFail) size += outcome_size(plan.coordinates, version);
     }
   }
   return size;
@@ -140,6 +153,7 @@ void check_representable(const Plan& plan) {
                 std::to_string(plan.parameter_sets.size()) + " parameter sets, at most 200");
   refuse_unless(plan.steps.size() <= kMaxSteps,
                 std::to_string(plan.steps.size()) + " steps, at most 200");
+  refuse_unless(plan.check_envelopes || !plan.check_places, "places are checked with envelopes");
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     const Step& step = plan.steps[i];
     for (int axis = 0; axis < 6; ++axis) {
@@ -147,8 +161,9 @@ void check_representable(const Plan& plan) {
       bool zero = step.displacement[axis] == 0.0;
       for (const OutcomeRule& rule : step.outcomes) {
         if (rule.successor == kSuccessorFail) continue;
-        zero = zero && rule.envelope.travelled_min[axis] == 0.0 &&
-               rule.envelope.travelled_max[axis] == 0.0;
+        const Envelope& e = rule.envelope;
+        zero = zero && e.travelled_min[axis] == 0.0 && e.travelled_max[axis] == 0.0 &&
+               e.place_min[axis] == 0.0 && e.place_max[axis] == 0.0;
       }
       refuse_unless(zero, "step " + std::to_string(i) +
                               " has a displacement or an envelope along " + "axis " +
@@ -167,7 +182,7 @@ std::vector<std::uint8_t> encode_plan(const Plan& plan) {
   write_header(out, plan, bytes.size());
   const std::uint16_t version = version_of(plan);
   for (const ParameterSet& set : plan.parameter_sets) write_parameter_set(out, set, version);
-  for (const Step& step : plan.steps) write_step(out, step, plan.coordinates);
+  for (const Step& step : plan.steps) write_step(out, step, plan.coordinates, version);
   out.write(crc32c(std::span<const std::uint8_t>(bytes).first(out.offset())));
   assert(out.ok() && out.remaining() == 0);
 

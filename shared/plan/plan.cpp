@@ -28,6 +28,7 @@ MoveParameters move_parameters(const Plan& plan, std::size_t step) {
   move.timeout_us = set.timeout_us;
   move.trigger_mask = set.trigger_mask;
   move.sensed_axes = set.sensed_axes;
+  move.aligns = set.aligns;
   if (set.carried_axes) move.carried_from = plan.goal.orientation;
   return move;
 }

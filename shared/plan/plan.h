@@ -41,6 +41,11 @@ inline constexpr std::array kPlanMethods = {PlanMethod::kMha, PlanMethod::kSingl
 struct Envelope {
   Vector6 travelled_min = Vector6::Zero();  ///< m, rad; zero off the plan's coordinates
   Vector6 travelled_max = Vector6::Zero();
+  /// Where the tool ended, as displacements from the plan's start in the task frame's axes; zero
+  /// off the coordinates, and in a plan that checks no places. Errors do not add up in them from
+  /// step to step.
+  Vector6 place_min = Vector6::Zero();
+  Vector6 place_max = Vector6::Zero();
   ContactSignature always;    ///< bits that every settled signature had
   ContactSignature possible;  ///< bits that some settled signature had
 };
@@ -60,6 +65,7 @@ struct ParameterSet {
   std::uint8_t sensed_axes = 0x3F;  ///< see MoveParameters
   /// The steps' axes turn with the tool, and are the task frame's at the goal's orientation.
   bool carried_axes = false;
+  bool aligns = true;  ///< see MoveParameters
 
   friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
 };
@@ -96,6 +102,7 @@ struct Plan {
   std::uint32_t draws = 0;  ///< of validation
   std::uint32_t draws_at_goal = 0;
   bool check_envelopes = true;  ///< false: outcomes alone decide (baseline planners)
+  bool check_places = false;    ///< the envelopes' places too; only with envelopes
   std::vector<ParameterSet> parameter_sets;
   std::vector<Step> steps;
 };

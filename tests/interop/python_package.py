@@ -90,7 +90,9 @@ def check_against_inspect(tenon, inspect, file, failures):
     failures.check(len(plan.steps) == len(told["steps"]), f"{name}: steps")
     for mine, theirs in zip(plan.steps, told["steps"]):
         outcomes = {outcome: {"successor": rule.successor, "travelled_min": rule.travelled_min.tolist(),
-                              "travelled_max": rule.travelled_max.tolist(), "always": rule.always,
+                              "travelled_max": rule.travelled_max.tolist(),
+                              "place_min": rule.place_min.tolist(),
+                              "place_max": rule.place_max.tolist(), "always": rule.always,
                               "possible": rule.possible} for outcome, rule in mine.outcomes.items()}
         made = {"displacement": mine.displacement.tolist(), "slow_from_m": mine.slow_from_m,
                 "parameter_set": mine.parameter_set, "outcomes": outcomes}

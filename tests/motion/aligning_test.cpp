@@ -135,8 +135,9 @@ TEST(Aligning, ARecordedMoveInCarriedAxesReplaysBitForBit) {
 
 /// Presses something at +x that cannot turn it. @param torque_Nm what the sensor is off by about an
 /// axis (0..2) at the press of a probe, in proportion at others
-GuardedMove::Result pressed_with_torque_off_by(double torque_Nm, int about) {
+GuardedMove::Result pressed_with_torque_off_by(double torque_Nm, int about, bool aligns = true) {
   MoveParameters push;
+  push.aligns = aligns;
   push.compliance.compliant_axes = 0b111001;
   push.compliance.stiffness_Nmpr = 5.0;
   push.compliance.damping_Nmspr = 1.0;
@@ -171,6 +172,16 @@ TEST(Aligning, WhatASensorIsWrongByTurnsAPressedToolByTheSpringsGiveAlone) {
   }
   const GuardedMove::Result turned = pressed_with_torque_off_by(2.0 * t.torque_off_Nm, 2);
   EXPECT_GT(std::abs(turn_of(turned.pose)), 10.0 * give_rad);
+}
+
+// It is held as it was met, at once, with what keeps a contact.
+TEST(Aligning, APlainTouchIsTurnedByTheSpringsGiveAloneAndDoesNotWait) {
+  const ContactThresholds t = with_press_torques({});
+  const GuardedMove::Result result = pressed_with_torque_off_by(2.0 * t.torque_off_Nm, 2, false);
+  EXPECT_EQ(result.outcome, Outcome::kContact);
+  EXPECT_EQ(to_string(result.signature), "-x");
+  EXPECT_LE(std::abs(turn_of(result.pose)), 2.0 * t.torque_off_Nm / 5.0);
+  EXPECT_LT(result.duration_ns - result.decided_ns, 600'000'000);
 }
 
 TEST(Aligning, APressTurnsNothingAboutItsOwnDirection) {

@@ -115,8 +115,10 @@ TEST(MoveReach, AsksForTheDrawsBeyondTheParticlesButForNoneThatGoesFartherThanIt
   // Particles met a wall after 0.10 to 0.18 m of 0.19, and slid by 4 mm: draws meet it after 0.08,
   // or are through.
   MoveReach::Travel travel;
-  travel.least.head<2>() << 0.10, -0.002;
-  travel.most.head<2>() << 0.18, 0.002;
+  travel.way.least.head<2>() << 0.10, -0.002;
+  travel.way.most.head<2>() << 0.18, 0.002;
+  travel.place.least.head<2>() << 0.30, 0.10;
+  travel.place.most.head<2>() << 0.32, 0.10;
   ASSERT_TRUE(reach.after(*place, 0.19 * Vector6::Unit(0), {}, travel, true));
   const Envelope& asked = place->asked.rule(Outcome::kReached).envelope;
   EXPECT_NEAR(asked.travelled_min[0], 0.08 - 0.001, 1e-12);
@@ -124,6 +126,9 @@ TEST(MoveReach, AsksForTheDrawsBeyondTheParticlesButForNoneThatGoesFartherThanIt
   EXPECT_NEAR(asked.travelled_min[1], -0.003 - 0.001, 1e-12);
   EXPECT_NEAR(asked.travelled_max[1], 0.003 + 0.001, 1e-12);
   EXPECT_EQ(asked.travelled_max[2], 0.0);
+  EXPECT_NEAR(asked.place_min[0], 0.295 - 0.001, 1e-12);
+  EXPECT_NEAR(asked.place_max[0], 0.325 + 0.001, 1e-12);
+  EXPECT_NEAR(asked.place_max[1], 0.10 + 0.001, 1e-12);
   EXPECT_TRUE(reach.refused_text().empty());
 }
 

@@ -62,7 +62,7 @@ GuardedMove::Result first_result() {
 }
 
 TEST(Transition, ExpectedResultGoesToTheSuccessor) {
-  const Transition next = transition(tests::documented_plan(), 0, first_result());
+  const Transition next = transition(tests::documented_plan(), 0, {}, first_result());
   EXPECT_EQ(next.successor, 1);
   EXPECT_EQ(next.deviation, Deviation::kNone);
 }
@@ -71,23 +71,41 @@ TEST(Transition, EveryDeviationFailsAndIsNamed) {
   const Plan plan = tests::documented_plan();
   GuardedMove::Result result = first_result();
   result.outcome = Outcome::kReached;
-  EXPECT_EQ(transition(plan, 0, result).deviation, Deviation::kUnexpectedOutcome);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).deviation, Deviation::kUnexpectedOutcome);
 
   result = first_result();
   result.travelled[1] = 0.0013;
-  EXPECT_EQ(transition(plan, 0, result).deviation, Deviation::kTravelOutside);
-  EXPECT_EQ(transition(plan, 0, result).index, 1);
-  EXPECT_EQ(transition(plan, 0, result).successor, kSuccessorFail);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).deviation, Deviation::kTravelOutside);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).index, 1);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).successor, kSuccessorFail);
 
   result = first_result();
   result.signature = {};
-  EXPECT_EQ(transition(plan, 0, result).deviation, Deviation::kContactMissing);
-  EXPECT_EQ(transition(plan, 0, result).index, 0);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).deviation, Deviation::kContactMissing);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).index, 0);
 
   result = first_result();
   result.signature.bits |= ContactSignature::bit(1, -1);
-  EXPECT_EQ(transition(plan, 0, result).deviation, Deviation::kContactUnforeseen);
-  EXPECT_EQ(transition(plan, 0, result).index, 3);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).deviation, Deviation::kContactUnforeseen);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).index, 3);
+}
+
+TEST(Transition, WhereATurningToolEndsIsHeldAgainstWhereItWasSeen) {
+  Plan plan = tests::documented_plan();
+  plan.check_places = true;
+  Envelope& seen = plan.steps[0].outcomes[static_cast<std::size_t>(Outcome::kContact)].envelope;
+  seen.place_min.head<2>() << -0.20, -0.01;
+  seen.place_max.head<2>() << -0.10, 0.01;
+  const Pose start{{0.3, 0.2, 0.1}, rotation_of({0.0, 0.0, 0.1})};
+  GuardedMove::Result result = first_result();
+  result.pose = displaced(start, {-0.15, 0.0, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_EQ(transition(plan, 0, start, result).deviation, Deviation::kNone);
+  result.pose = displaced(start, {-0.15, 0.02, 0.0, 0.0, 0.0, 0.0});
+  const Transition beside = transition(plan, 0, start, result);
+  EXPECT_EQ(beside.deviation, Deviation::kPlaceOutside);
+  EXPECT_EQ(beside.index, 1);
+  EXPECT_NEAR(beside.travelled, 0.02, 1e-12);
+  EXPECT_EQ(beside.travelled_max, 0.01);
 }
 
 TEST(Transition, WithoutEnvelopesTheOutcomeAloneDecides) {
@@ -96,15 +114,16 @@ TEST(Transition, WithoutEnvelopesTheOutcomeAloneDecides) {
   GuardedMove::Result result = first_result();
   result.travelled[0] = 3.0;
   result.signature = {};
-  EXPECT_EQ(transition(plan, 0, result).successor, 1);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).successor, 1);
   result.outcome = Outcome::kBlocked;
-  EXPECT_EQ(transition(plan, 0, result).successor, kSuccessorFail);
+  EXPECT_EQ(transition(plan, 0, plan.start, result).successor, kSuccessorFail);
 }
 
 TEST(Transition, NotANumberIsOutside) {
   GuardedMove::Result result = first_result();
   result.travelled[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(transition(tests::documented_plan(), 0, result).deviation, Deviation::kTravelOutside);
+  EXPECT_EQ(transition(tests::documented_plan(), 0, {}, result).deviation,
+            Deviation::kTravelOutside);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-"""The plan file (.tnp), versions 1 and 2, as shared/plan/FORMAT.md has it byte by byte."""
+"""The plan file (.tnp), versions 1 to 3, as shared/plan/FORMAT.md has it byte by byte."""
 
 import dataclasses
 import math
@@ -15,7 +15,7 @@ METHODS = ("mha", "single-particle", "contact-greedy")
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 
 _MAGIC = b"TNP\x1a"
-_VERSIONS = (1, 2)
+_VERSIONS = (1, 2, 3)
 _HEADER_BYTES = 205
 _CHECKSUM_BYTES = 4
 _ALL_AXES = 0x3F
@@ -43,6 +43,8 @@ class OutcomeRule:
         possible: contacts that some had
         travelled_min: (6,) m and rad
         travelled_max: (6,) m and rad
+        place_min: (6,) m and rad, from where the tool stood when the plan began; zero below version 3
+        place_max: (6,) m and rad
     """
 
     successor: typing.Union[int, str]
@@ -50,6 +52,8 @@ class OutcomeRule:
     possible: str
     travelled_min: np.ndarray
     travelled_max: np.ndarray
+    place_min: np.ndarray
+    place_max: np.ndarray
 
 
 @dataclasses.dataclass(frozen=True)
@@ -93,6 +97,7 @@ class ParameterSet:
         trigger_mask: contacts that end a move, as contacts() has them
         sensed_axes: on which contacts are decided from the wrench, such as "x y"
         carried_axes: displacements, contacts and envelopes are in axes that the tool carries
+        aligns: where rotations yield, a contact is pressed until the tool lies flat on it
     """
 
     approach_mps: float
@@ -114,6 +119,7 @@ class ParameterSet:
     trigger_mask: str
     sensed_axes: str
     carried_axes: bool
+    aligns: bool
 
 
 @dataclasses.dataclass(frozen=True)
@@ -309,13 +315,25 @@ def _parameter_set(reader, version, force_limit_N):
     values["debounce_us"] = reader.whole("debounce_us", "I", 0, 1_000_000)
     values["timeout_us"] = reader.whole("timeout_us", "I", 1, 600_000_000)
     values["trigger_mask"] = contacts(reader.bits("trigger_mask", "H", _ALL_CONTACTS))
-    sensed = reader.bits("sensed_axes", "B", _ALL_AXES) if version == 2 else _ALL_AXES
+    sensed = reader.bits("sensed_axes", "B", _ALL_AXES) if version >= 2 else _ALL_AXES
     values["sensed_axes"] = _axes(sensed)
-    values["carried_axes"] = bool(reader.bits("axes", "B", 1)) if version == 2 else False
+    flags = reader.bits("axes", "B", 3) if version >= 2 else 0
+    values["carried_axes"] = bool(flags & 1)
+    values["aligns"] = not flags & 2
     return ParameterSet(**values)
 
 
-def _outcome(reader, step, step_count, axes):
+def _range(reader, names, axes):
+    low, high = np.zeros(6), np.zeros(6)
+    for axis in axes:
+        low[axis] = reader.f32(names[0], _TRAVEL)
+        high[axis] = reader.f32(names[1], _TRAVEL)
+        if low[axis] > high[axis]:
+            reader.refuse(names[1], f"= {high[axis]:g}, must be at least {names[0]} = {low[axis]:g}")
+    return low, high
+
+
+def _outcome(reader, version, step, step_count, axes):
     successor = reader.take("successor", "B")
     if successor != _DONE and not step < successor < step_count:
         reader.refuse("successor", f"= {successor}, must be a step after {step}, below {step_count}, or {_DONE}")
@@ -323,23 +341,20 @@ def _outcome(reader, step, step_count, axes):
     possible = reader.bits("possible", "H", _ALL_CONTACTS)
     if always & ~possible:
         reader.refuse("possible", "must have every bit of always")
-    low, high = np.zeros(6), np.zeros(6)
-    for axis in axes:
-        low[axis] = reader.f32("travelled_min", _TRAVEL)
-        high[axis] = reader.f32("travelled_max", _TRAVEL)
-        if low[axis] > high[axis]:
-            reader.refuse("travelled_max", f"= {high[axis]:g}, must be at least travelled_min = {low[axis]:g}")
-    return OutcomeRule("done" if successor == _DONE else successor, contacts(always), contacts(possible), low, high)
+    travelled = _range(reader, ("travelled_min", "travelled_max"), axes)
+    place = _range(reader, ("place_min", "place_max"), axes if version == 3 else [])
+    return OutcomeRule("done" if successor == _DONE else successor, contacts(always), contacts(possible),
+                       *travelled, *place)
 
 
-def _step(reader, index, step_count, set_count, axes):
+def _step(reader, version, index, step_count, set_count, axes):
     parameter_set = reader.whole("parameter_set", "B", 0, set_count - 1)
     present = reader.bits("outcomes", "B", 0x1F)
     slow_from_m = reader.f32("slow_from_m", (0.0, 10.0, False))
     displacement = np.zeros(6)
     for axis in axes:
         displacement[axis] = reader.f32("displacement", _TRAVEL)
-    outcomes = {name: _outcome(reader, index, step_count, axes)
+    outcomes = {name: _outcome(reader, version, index, step_count, axes)
                 for bit, name in enumerate(OUTCOMES) if present >> bit & 1}
     return Step(parameter_set, slow_from_m, displacement, outcomes)
 
@@ -352,7 +367,7 @@ def _check_whole(file, data):
         raise FileError(file, f"magic: is {data[:4].hex(' ')}, a plan begins with {_MAGIC.hex(' ')}", 0)
     version, = struct.unpack_from("<H", data, 4)
     if version not in _VERSIONS:
-        raise FileError(file, f"version: = {version}, this reads versions 1 and 2", 4)
+        raise FileError(file, f"version: = {version}, this reads versions 1 to 3", 4)
     length, = struct.unpack_from("<I", data, 8)
     if length != len(data):
         raise FileError(file, f"length: = {length}, the file has {len(data)} bytes", 8)
@@ -370,8 +385,10 @@ def decode_plan(data, file="plan"):
     reader = _Reader(file, data)
     reader.at = 6
     flags = reader.take("flags", "B")
-    if flags & ~0x07 or flags >> 1 & 3 >= len(METHODS):
-        reader.refuse("flags", f"= {flags:#x}, must have bits 0 to 2 alone, and a method below {len(METHODS)}")
+    if flags & ~0x0f or (flags >> 1 & 3) >= len(METHODS):
+        reader.refuse("flags", f"= {flags:#x}, must have bits 0 to 3 alone, and a method below {len(METHODS)}")
+    if (version == 3) != (flags & 0x08 != 0) or flags & 0x09 == 0x08:
+        reader.refuse("flags", f"= {flags:#x}, must have bit 3, with bit 0, in version 3 and there alone")
     coordinates = reader.whole("coordinates", "B", 1, _ALL_AXES)
     axes = [axis for axis in range(6) if coordinates >> axis & 1]
     reader.at = 12
@@ -399,9 +416,9 @@ def decode_plan(data, file="plan"):
     set_count = reader.whole("parameter_set_count", "B", 1, _COUNT_MAX)
     step_count = reader.whole("step_count", "B", 1, _COUNT_MAX)
     sets = [_parameter_set(reader, version, header["force_limit_N"]) for _ in range(set_count)]
-    if version == 2 and all(s.sensed_axes == _axes(_ALL_AXES) and not s.carried_axes for s in sets):
+    if version == 2 and all(s.sensed_axes == _axes(_ALL_AXES) and not s.carried_axes and s.aligns for s in sets):
         raise FileError(file, "version: = 2, though version 1 says as much: every axis is sensed, none is carried", 4)
-    steps = [_step(reader, i, step_count, set_count, axes) for i in range(step_count)]
+    steps = [_step(reader, version, i, step_count, set_count, axes) for i in range(step_count)]
     if reader.at != len(data) - _CHECKSUM_BYTES:
         raise FileError(file, f"steps: {len(data) - _CHECKSUM_BYTES - reader.at} bytes are left over behind the last",
                         reader.at)
