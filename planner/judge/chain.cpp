@@ -10,6 +10,14 @@ std::string bit_name(int index) {
   return to_string(ContactSignature{static_cast<std::uint16_t>(1U << index)});
 }
 
+/// "travelled 3.10 mm along x, its envelope is 0.00 to 3.00"
+std::string outside(const char* what, const Transition& t) {
+  return std::string(what) + format(" %.2f %s along %s, its envelope is %.2f to %.2f",
+                                    shown(t.travelled, t.index), t.index < 3 ? "mm" : "deg",
+                                    axis_name(t.index), shown(t.travelled_min, t.index),
+                                    shown(t.travelled_max, t.index));
+}
+
 }  // namespace
 
 std::string describe(const Transition& transition, const GuardedMove::Result& move) {
@@ -20,17 +28,9 @@ std::string describe(const Transition& transition, const GuardedMove::Result& mo
     case Deviation::kUnexpectedOutcome:
       return outcome + " has no successor";
     case Deviation::kTravelOutside:
-      return outcome + format(", travelled %.2f %s along %s, its envelope is %.2f to %.2f",
-                              shown(transition.travelled, transition.index),
-                              transition.index < 3 ? "mm" : "deg", axis_name(transition.index),
-                              shown(transition.travelled_min, transition.index),
-                              shown(transition.travelled_max, transition.index));
+      return outcome + outside(", travelled", transition);
     case Deviation::kPlaceOutside:
-      return outcome + format(", ended %.2f %s from the start along %s, must be %.2f to %.2f",
-                              shown(transition.travelled, transition.index),
-                              transition.index < 3 ? "mm" : "deg", axis_name(transition.index),
-                              shown(transition.travelled_min, transition.index),
-                              shown(transition.travelled_max, transition.index));
+      return outcome + outside(", ended, from the start,", transition);
     case Deviation::kContactMissing:
       return outcome + ", contact " + bit_name(transition.index) + " is missing";
     case Deviation::kContactUnforeseen:

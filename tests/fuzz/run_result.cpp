@@ -9,20 +9,14 @@
 #include "executor/recorded/result_file.h"
 #include "planner/report/run_data.h"
 #include "shared/plan/plan.h"
+#include "tests/fuzz/support/made_plan.h"
 #include "tests/fuzz/support/refused.h"
-#include "tests/support/hand_made.h"
 
 namespace {
 
 using namespace tenon;
+using fuzz::made_plan;
 using fuzz::must;
-
-/// Where its tool ends is laid onto the goal by turning too.
-Plan made_plan() {
-  Plan plan = executor::touch_and_slide_plan();
-  plan.coordinates = 0x3F;
-  return plan;
-}
 
 void check(const RecordedRun& run, const Plan& plan) {
   must(run.ended && std::isfinite(run.duration_s) && run.peak_force_N.has_value(),

@@ -60,6 +60,22 @@ TEST_F(LastMove, StaysWhereLittleIsGainedOrSomethingIsTouched) {
   EXPECT_EQ(moved({pushed}), Vector6::Zero());
 }
 
+// A tool that was turned about z by contacts is turned about the other axes by rounding.
+TEST_F(LastMove, ThatIsCarriedStaysWithinTheCoordinates) {
+  Task turning = task;
+  turning.coordinates = 0b100011;
+  turning.motion.carried_axes = true;
+  Plan turned = plan;
+  turned.coordinates = turning.coordinates;
+  Chain chain = ended(0.8 * tolerance_m, 0.0);
+  chain.moves[1].pose.orientation =
+      rotation_of({1e-17, 1e-17, 0.1}) * chain.moves[1].pose.orientation;
+  const auto centred = with_last_move_centred(turned, std::vector<Chain>{chain}, turning);
+  ASSERT_TRUE(centred);
+  EXPECT_NE(centred->steps[1].displacement[0], plan.steps[1].displacement[0]);
+  EXPECT_EQ(centred->steps[1].displacement[2], 0.0);
+}
+
 // All the way at approach speed remains all the way.
 TEST_F(LastMove, KeepsHowFarItIsFast) {
   Plan fast = plan;
