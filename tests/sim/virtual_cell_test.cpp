@@ -225,6 +225,27 @@ TEST(VirtualCellTest, ACellThatWakesLateMovesAsIfItHadBeenOnTime) {
   EXPECT_DOUBLE_EQ(late.cell.truth().drives[1].position, on_time.cell.truth().drives[1].position);
 }
 
+// on time:  SYNC RPDO  .    .  | SYNC RPDO      late:  SYNC RPDO  (asleep, SYNC RPDO meanwhile) |
+// SYNC RPDO A sleep that ends between two SYNCs: the first of them was due in the middle of it.
+TEST(VirtualCellTest, ASyncThatWasDueWhileTheCellSleptActsWhenItWasDue) {
+  LiteralCell on_time;
+  LiteralCell late;
+  for (LiteralCell* bench : {&on_time, &late}) {
+    ASSERT_TRUE(bench->enable());
+    bench->move(1, 200, 100);
+  }
+  const int target = late.target_counts[1] + 200;
+  on_time.move(1, 200, 1);
+  late.send(0x080, {});
+  late.send(0x202, {0x0F, 0, target & 0xFF, target >> 8 & 0xFF, target >> 16 & 0xFF, 0});
+  late.now_ns = on_time.now_ns += 1'500'000;
+  for (LiteralCell* bench : {&on_time, &late}) {
+    bench->cell.step(bench->now_ns, bench->bus);
+    bench->step();  // shows how fast it moves, which the moment of the SYNC decides
+  }
+  EXPECT_DOUBLE_EQ(late.cell.truth().drives[1].position, on_time.cell.truth().drives[1].position);
+}
+
 std::vector<std::string> wall_run(std::uint64_t seed, double wall_offset_m, int cycles) {
   VirtualCell::Options options;
   options.seed = seed;

@@ -27,6 +27,9 @@ namespace {
 
 constexpr double kOverlapMax_m = 1e-5;
 constexpr double kStandstill = 1e-4;  // m/s or rad/s
+/// Who comes each millisecond finds at most this to catch up with, steps of physics being of half a
+/// one.
+constexpr std::int64_t kAwake_ns = 1'500'000;
 
 SensorImperfections sensor_imperfections(const WorldDraw& world) {
   SensorImperfections imperfections;
@@ -131,6 +134,7 @@ class VirtualCell::Impl {
   void advance_physics(std::int64_t now_ns);
   void physics_step();
   void inject_faults();
+  [[nodiscard]] std::int64_t sync_time_ns(std::int64_t now_ns, std::int64_t syncs_left) const;
   void deliver(const CanFrame& frame, std::int64_t now_ns);
   void pass_wrench();
   void send(CanBus& bus, bool arbitrate);
@@ -159,6 +163,7 @@ class VirtualCell::Impl {
   bool on_ = false;
   std::int64_t on_ns_ = 0;
   std::int64_t physics_ns_ = 0;
+  std::int64_t sync_ns_ = 0;  ///< when the last SYNC acted
   std::int64_t physics_cost_ns_ = 0;
   // The sensor reports the mean since its last sample, as sensors that sample faster do.
   Vector6 wrench_sum_ = Vector6::Zero();
@@ -208,9 +213,9 @@ void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
   std::int64_t syncs_left = std::count_if(incoming_.begin(), incoming_.end(), is_arms_sync);
   for (const CanFrame& frame : incoming_) {
     if (is_arms_sync(frame)) {
-      // Several at once: the caller is late. They came a cycle apart, and act so.
       --syncs_left;
-      advance_physics(now_ns - syncs_left * cycle_ns_);
+      sync_ns_ = sync_time_ns(now_ns, syncs_left);
+      advance_physics(sync_ns_);
     }
     deliver(frame, now_ns);
     send(bus, is_sync(frame));
@@ -220,6 +225,16 @@ void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
   sensor_->advance(now_ns);
   send(bus, false);
   watch_.look_at_drives(time_ns());
+}
+
+// Of frames that came while the caller slept, nothing tells when. A master's SYNCs come a cycle
+// apart: a SYNC that was due meanwhile acts when it was due, and so do several at once. Otherwise
+// the caller's lateness would shake the arm, and the master feel a contact.
+std::int64_t VirtualCell::Impl::sync_time_ns(std::int64_t now_ns, std::int64_t syncs_left) const {
+  const std::int64_t latest_ns = now_ns - syncs_left * cycle_ns_;
+  const std::int64_t due_ns = sync_ns_ + cycle_ns_;
+  const bool slept = now_ns - physics_ns_ > kAwake_ns && due_ns >= physics_ns_;
+  return slept ? std::min(due_ns, latest_ns) : latest_ns;
 }
 
 void VirtualCell::Impl::deliver(const CanFrame& frame, std::int64_t now_ns) {
