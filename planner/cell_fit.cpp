@@ -27,6 +27,39 @@ constexpr double kResolutionMargin = 1.2;
 constexpr std::uint32_t kDebouncePeriods = 2;
 constexpr double kTimeoutMax_us = 600e6;
 
+/// How far from the tool's tip the held part may be touched, m.
+double touch_lever_m(const Task& task) {
+  double lever_m = 0.0;
+  for (const Shape& shape : task.held) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3 signs((corner & 1) != 0 ? 0.5 : -0.5, (corner & 2) != 0 ? 0.5 : -0.5,
+                          (corner & 4) != 0 ? 0.5 : -0.5);
+      const Vector3 at_m =
+          shape.pose.position_m + shape.pose.orientation * signs.cwiseProduct(shape.size_m).eval();
+      lever_m = std::max(lever_m, at_m.norm());
+    }
+  }
+  return lever_m;
+}
+
+/// What a touch may rise to, and which of the cell's faults has it so.
+struct PeakBound {
+  double force_N;
+  std::string of_what;
+};
+
+PeakBound peak_bound(const Task& task, const Cell& cell) {
+  const double lever_m = touch_lever_m(task);
+  const double by_torque_N = cell.torque_fault_Nm / lever_m;
+  if (by_torque_N >= cell.force_fault_N) {
+    return {kPeakShare * cell.force_fault_N,
+            format("%g of faults.force_N = %g N", kPeakShare, cell.force_fault_N)};
+  }
+  return {kPeakShare * by_torque_N,
+          format("%.3g N: %g of faults.torque_Nm = %g Nm, %.3g m from the tip, where the part ends",
+                 kPeakShare * by_torque_N, kPeakShare, cell.torque_fault_Nm, lever_m)};
+}
+
 class Fitting {
  public:
   Fitting(const Task& task, const Cell& cell) : cell_(cell), loop_(contact_loop(cell)) {
@@ -163,26 +196,25 @@ class Fitting {
     Task& task = fit_.task;
     SpeedLimits& speeds = task.motion.speeds;
     const double force_on_N = task.motion.thresholds.force_on_N;
-    const double most_N = kPeakShare * cell_.force_fault_N;
+    const PeakBound most = peak_bound(task, cell_);
     const double peak_N = peak_force_N(loop_, task.compliance, force_on_N, speeds.contact_mps);
-    if (peak_N <= most_N) return;
+    if (peak_N <= most.force_N) return;
 
     const double seconds = loop_.blind_s() + task.compliance.mass_kg / task.compliance.damping_Nspm;
-    const double lowered_mps = (most_N - force_on_N) / (loop_.stiffness_Npm * seconds);
+    const double lowered_mps = (most.force_N - force_on_N) / (loop_.stiffness_Npm * seconds);
     if (!(lowered_mps >= kContactSpeedMin_mps)) {
-      refuse(format("contact_mps would have to be %.3g for a peak force of at most %g of "
-                    "faults.force_N = %g N with force_on %g N, k_e = %g N/m and %.3g s to stop; "
-                    "must be at least %g",
-                    lowered_mps, kPeakShare, cell_.force_fault_N, force_on_N, loop_.stiffness_Npm,
-                    seconds, kContactSpeedMin_mps) +
+      refuse(format("contact_mps would have to be %.3g for a peak force of at most %s, with "
+                    "force_on %g N, k_e = %g N/m and %.3g s to stop; must be at least %g",
+                    lowered_mps, most.of_what.c_str(), force_on_N, loop_.stiffness_Npm, seconds,
+                    kContactSpeedMin_mps) +
              force_cause_);
     }
     note(
         format("contact speed %g -> %.4g m/s: the peak force F_on + k_e v ((2 n + m + 3) T + "
                "tau_arm + M / D) "
-               "= %g + %g * v * %.4g was %.3g N, now %g of the fault at %g N",
+               "= %g + %g * v * %.4g was %.3g N, now %s",
                speeds.contact_mps, lowered_mps, force_on_N, loop_.stiffness_Npm, seconds, peak_N,
-               kPeakShare, cell_.force_fault_N));
+               most.of_what.c_str()));
     stretch_timeout(speeds.contact_mps / lowered_mps);
     speeds.contact_mps = lowered_mps;
   }

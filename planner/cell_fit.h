@@ -21,9 +21,11 @@ struct CellFit {
 
 /// Changes what must be changed and nothing else, so that the executor's check of the plan against
 /// this cell passes: D up to 1.5 k_e tau and a tenth more, M down to D tau, the contact speed down
-/// until the peak force is within four fifths of the cell's force fault, all force thresholds up
-/// together to five deviations of the sensor's noise, the debounce up to two cycles. The time limit
-/// of a move grows as its contact speed falls.
+/// until the peak force is within four fifths of the cell's force fault, and with the held part's
+/// farthest point as its lever within four fifths of the torque fault; all force thresholds up
+/// together to five deviations of the sensor's noise and to what joints' efforts resolve, the
+/// debounce up to two of the sensor's periods. The time limit of a move grows as its contact speed
+/// falls.
 /// @throws InputError with both numbers where the contact speed would fall below 2 mm/s, or a
 /// force limit does not fit the cell
 [[nodiscard]] CellFit fit_to_cell(const Task& task, const Cell& cell);

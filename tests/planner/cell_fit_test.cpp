@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "executor/dry_run/plan_check.h"
 #include "shared/base/error.h"
 #include "shared/motion/stiff_contact.h"
@@ -86,6 +88,24 @@ TEST(CellFit, AContactThatOnlyACrawlCouldMeetIsRefusedWithItsNumbers) {
   EXPECT_NE(text.find("contact_mps would have to be 0.0004"), std::string::npos) << text;
   EXPECT_NE(text.find("at least 0.002"), std::string::npos) << text;
   EXPECT_NE(text.find("1e+06 N/m"), std::string::npos) << text;
+}
+
+// A force at the far end of what is held turns the hand by as much as it is away from the tip.
+TEST(CellFit, ATouchFarFromTheTipStaysBelowTheTorqueFault) {
+  Task task = room_task();
+  const Shape bar{"bar", Shape::Kind::kBox, {0.02, 0.02, 0.48}, {.position_m = {0.0, 0.0, 0.24}}};
+  task.held = {bar};
+  Cell cell = cell_with(2000, 0.004, 4e4);
+  cell.torque_fault_Nm = 12.0;
+  const CellFit fit = fit_to_cell(task, cell);
+  // 0.8 * 12 Nm / 0.4802 m = 19.99 N = 6 N + 4e4 * v * (seconds to stop)
+  ASSERT_EQ(fit.changes.size(), 2U);
+  EXPECT_NE(fit.changes[0].find("now 20 N: 0.8 of faults.torque_Nm = 12 Nm, 0.48 m from the tip"),
+            std::string::npos)
+      << fit.changes[0];
+  const double peak_N = peak_force_N(contact_loop(cell), fit.task.compliance, 6.0,
+                                     fit.task.motion.speeds.contact_mps);
+  EXPECT_NEAR(peak_N * std::hypot(0.01, 0.01, 0.48), 0.8 * 12.0, 1e-9);
 }
 
 TEST(CellFit, AForceLimitBeyondTheCellsFaultIsRefused) {
