@@ -11,14 +11,16 @@ namespace {
 
 // Speeds and spreads of a task are at most 1 m/s and 1 m: what an arm holds is no larger.
 constexpr double kPartMax_m = 1.0;
+// A floor or a wall of the cell is; beyond this no arm gets.
+constexpr double kEnvironmentMax_m = 10.0;
 // Below what a threshold of force can tell apart.
 constexpr double kPartMin_m = 1e-4;
 
-std::string key_of(const Shape& shape, std::size_t index) {
+std::string key_of(const char* list, const Shape& shape, std::size_t index) {
   const char* key = ".box_m";
   if (shape.kind == Shape::Kind::kCylinder) key = ".cylinder";
   if (shape.kind == Shape::Kind::kSolid) key = " (mesh or extrusion)";
-  return format("held[%zu]%s of '%s'", index, key, shape.name.c_str());
+  return format("%s[%zu]%s of '%s'", list, index, key, shape.name.c_str());
 }
 
 /// In which units the numbers would make a part.
@@ -45,6 +47,13 @@ double beyond(const Shape& shape) {
 
 std::vector<Finding> doubtful_sizes(const Task& task) {
   std::vector<Finding> findings;
+  const auto doubt = [&](const char* list, std::size_t i, const Shape& shape, const char* why) {
+    findings.push_back(
+        {Finding::Weight::kDoubt, key_of(list, shape, i) +
+                                      format(" measures %g x %g x %g m, %s", shape.size_m.x(),
+                                             shape.size_m.y(), shape.size_m.z(), why) +
+                                      units_meant(shape.size_m.maxCoeff())});
+  };
   double nearest_m = std::numeric_limits<double>::infinity();
   double largest_m = 0.0;
   for (std::size_t i = 0; i < task.held.size(); ++i) {
@@ -53,11 +62,12 @@ std::vector<Finding> doubtful_sizes(const Task& task) {
     largest_m = std::max(largest_m, shape.size_m.maxCoeff());
     const double size_m = shape.size_m.maxCoeff();
     if (size_m <= kPartMax_m && size_m >= kPartMin_m) continue;
-    findings.push_back(
-        {Finding::Weight::kDoubt, key_of(shape, i) +
-                                      format(" measures %g x %g x %g m, which no arm holds",
-                                             shape.size_m.x(), shape.size_m.y(), shape.size_m.z()) +
-                                      units_meant(size_m)});
+    doubt("held", i, shape, "which no arm holds");
+  }
+  for (std::size_t i = 0; i < task.environment.size(); ++i) {
+    const Shape& shape = task.environment[i];
+    if (shape.size_m.maxCoeff() <= kEnvironmentMax_m) continue;
+    doubt("environment", i, shape, "which no arm reaches around");
   }
   if (nearest_m > 0.5 * largest_m) {
     findings.push_back(
