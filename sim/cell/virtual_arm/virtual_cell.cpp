@@ -227,14 +227,12 @@ void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
   watch_.look_at_drives(time_ns());
 }
 
-// Of frames that came while the caller slept, nothing tells when. A master's SYNCs come a cycle
-// apart: a SYNC that was due meanwhile acts when it was due, and so do several at once. Otherwise
-// the caller's lateness would shake the arm, and the master feel a contact.
+// A SYNC that was due while the caller slept acts then: its lateness must not shake the arm.
 std::int64_t VirtualCell::Impl::sync_time_ns(std::int64_t now_ns, std::int64_t syncs_left) const {
-  const std::int64_t latest_ns = now_ns - syncs_left * cycle_ns_;
+  const std::int64_t latest_ns = now_ns - syncs_left * cycle_ns_;  // several came a cycle apart
   const std::int64_t due_ns = sync_ns_ + cycle_ns_;
-  const bool slept = now_ns - physics_ns_ > kAwake_ns && due_ns >= physics_ns_;
-  return slept ? std::min(due_ns, latest_ns) : latest_ns;
+  if (now_ns - physics_ns_ <= kAwake_ns || due_ns < physics_ns_) return latest_ns;
+  return std::min(due_ns, latest_ns);
 }
 
 void VirtualCell::Impl::deliver(const CanFrame& frame, std::int64_t now_ns) {
