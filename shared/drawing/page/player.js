@@ -2,6 +2,7 @@
 // Its unit is the page's: moves of a plan, or seconds of a run.
 
 const SECONDS_PER_MOVE = 1.4;
+const LEAP_MS = 1000;  // at most, from one picture to the next
 
 // Drawn and not written: not every font has these signs.
 function iconOf(path) {
@@ -119,7 +120,8 @@ class Player {
     let last = null;
     const frame = (now) => {
       if (!this.playing) return;
-      const elapsed = last === null ? 0 : Math.min(now - last, 100);
+      // A browser that draws slowly shows fewer pictures, not slower ones; one that slept does not leap.
+      const elapsed = last === null ? 0 : Math.min(now - last, LEAP_MS);
       last = now;
       this.set(this.time + 1e-3 * elapsed * this.perSecond * this.speed);
       if (this.time >= this.end) this.pause();
