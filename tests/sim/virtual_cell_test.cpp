@@ -206,44 +206,47 @@ TEST(VirtualCellTest, AMasterThatDiesInMotionLeavesTheArmStoppedWithItsBrakesOn)
   EXPECT_NE(std::find(bench.log.begin(), bench.log.end(), "081#3081110000000000"), bench.log.end());
 }
 
-// on time:  SYNC RPDO | SYNC RPDO | SYNC RPDO |      late:  (asleep) SYNC RPDO SYNC RPDO SYNC RPDO
-TEST(VirtualCellTest, ACellThatWakesLateMovesAsIfItHadBeenOnTime) {
+/// Two cells in the same even motion, of which one is about to sleep.
+class CellThatSleeps : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (LiteralCell* bench : {&on_time, &late}) {
+      ASSERT_TRUE(bench->enable());
+      bench->move(1, 200, 100);
+    }
+  }
+  /// SYNC and target of a cycle, which the sleeper finds when it wakes.
+  void send_to_sleeper(int target) {
+    late.send(0x080, {});
+    late.send(0x202, {0x0F, 0, target & 0xFF, target >> 8 & 0xFF, target >> 16 & 0xFF, 0});
+  }
+  static double position(const LiteralCell& bench) { return bench.cell.truth().drives[1].position; }
+
   LiteralCell on_time;
   LiteralCell late;
-  for (LiteralCell* bench : {&on_time, &late}) {
-    ASSERT_TRUE(bench->enable());
-    bench->move(1, 200, 100);
-  }
+};
+
+// on time:  SYNC RPDO | SYNC RPDO | SYNC RPDO |      late:  (asleep) SYNC RPDO SYNC RPDO SYNC RPDO
+TEST_F(CellThatSleeps, MovesOnWakingAsIfItHadBeenOnTime) {
   for (int i = 1; i <= 3; ++i) {
     on_time.move(1, 200, 1);
-    late.send(0x080, {});
-    const int target = late.target_counts[1] + 200 * i;
-    late.send(0x202, {0x0F, 0, target & 0xFF, target >> 8 & 0xFF, target >> 16 & 0xFF, 0});
+    send_to_sleeper(late.target_counts[1] + 200 * i);
   }
   late.now_ns = on_time.now_ns;
   late.cell.step(late.now_ns, late.bus);
-  EXPECT_DOUBLE_EQ(late.cell.truth().drives[1].position, on_time.cell.truth().drives[1].position);
+  EXPECT_DOUBLE_EQ(position(late), position(on_time));
 }
 
-// on time:  SYNC RPDO  .    .  | SYNC RPDO      late:  SYNC RPDO  (asleep, SYNC RPDO meanwhile) |
-// SYNC RPDO A sleep that ends between two SYNCs: the first of them was due in the middle of it.
-TEST(VirtualCellTest, ASyncThatWasDueWhileTheCellSleptActsWhenItWasDue) {
-  LiteralCell on_time;
-  LiteralCell late;
-  for (LiteralCell* bench : {&on_time, &late}) {
-    ASSERT_TRUE(bench->enable());
-    bench->move(1, 200, 100);
-  }
-  const int target = late.target_counts[1] + 200;
+// A sleep that ends between two SYNCs: one was due in the middle of it.
+TEST_F(CellThatSleeps, TakesASyncThatWasDueMeanwhileToHaveComeThen) {
+  send_to_sleeper(late.target_counts[1] + 200);
   on_time.move(1, 200, 1);
-  late.send(0x080, {});
-  late.send(0x202, {0x0F, 0, target & 0xFF, target >> 8 & 0xFF, target >> 16 & 0xFF, 0});
   late.now_ns = on_time.now_ns += 1'500'000;
   for (LiteralCell* bench : {&on_time, &late}) {
     bench->cell.step(bench->now_ns, bench->bus);
     bench->step();  // shows how fast it moves, which the moment of the SYNC decides
   }
-  EXPECT_DOUBLE_EQ(late.cell.truth().drives[1].position, on_time.cell.truth().drives[1].position);
+  EXPECT_DOUBLE_EQ(position(late), position(on_time));
 }
 
 std::vector<std::string> wall_run(std::uint64_t seed, double wall_offset_m, int cycles) {

@@ -27,8 +27,7 @@ namespace {
 
 constexpr double kOverlapMax_m = 1e-5;
 constexpr double kStandstill = 1e-4;  // m/s or rad/s
-/// Who comes each millisecond finds at most this to catch up with, steps of physics being of half a
-/// one.
+/// Who calls each millisecond is at most this behind, a step of physics being half of one.
 constexpr std::int64_t kAwake_ns = 1'500'000;
 
 SensorImperfections sensor_imperfections(const WorldDraw& world) {
@@ -227,7 +226,7 @@ void VirtualCell::Impl::step(std::int64_t now_ns, CanBus& bus) {
   watch_.look_at_drives(time_ns());
 }
 
-// A SYNC that was due while the caller slept acts then: its lateness must not shake the arm.
+// A SYNC that was due while the caller slept acts when due: who calls late must not shake the arm.
 std::int64_t VirtualCell::Impl::sync_time_ns(std::int64_t now_ns, std::int64_t syncs_left) const {
   const std::int64_t latest_ns = now_ns - syncs_left * cycle_ns_;  // several came a cycle apart
   const std::int64_t due_ns = sync_ns_ + cycle_ns_;
