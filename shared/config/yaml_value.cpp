@@ -4,6 +4,8 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -200,31 +202,32 @@ std::vector<Value> Value::overlaid_by_name(const std::vector<Value>& values) con
 }
 
 std::vector<Value::Entry> Value::entries() const {
-  const auto given = [](const std::vector<Entry>& entries, const std::string& key) {
-    return std::find_if(entries.begin(), entries.end(),
-                        [&key](const Entry& entry) { return entry.key == key; });
-  };
+  // Keys are looked up in sets: a file may hold so many that a search for each through all others
+  // would never end.
   std::vector<Entry> own;
+  std::set<std::string> given;
   for (const auto& pair : node_) {
     const std::string key = pair.first.IsScalar() ? pair.first.Scalar() : "?";
     const std::string path = (path_.empty() ? "" : path_ + ".") + shortened(key, kShownMax);
     const Value key_value(file_, path, pair.first);
-    if (given(own, key) != own.end()) key_value.refuse("is given twice");
+    if (!given.insert(key).second) key_value.refuse("is given twice");
     // An empty value is refused by whoever reads it, at the line of its key.
     own.push_back({key, key_value, {file_, path, pair.second}});
   }
   if (over_ == nullptr) return own;
   // Built anew: assigning to a YAML::Node would change the file's node, aliases of it included.
   const std::vector<Entry> overs = over_->entries();
+  std::map<std::string_view, const Entry*> over_of;
+  for (const Entry& over : overs) over_of.emplace(over.key, &over);
   std::vector<Entry> merged;
   for (const Entry& under : own) {
-    const auto over = given(overs, under.key);
-    merged.push_back(over == overs.end() ? under
-                                         : Entry{under.key, under.key_value,
-                                                 under.value.overlaid_with(over->value)});
+    const auto over = over_of.find(under.key);
+    merged.push_back(over == over_of.end() ? under
+                                           : Entry{under.key, under.key_value,
+                                                   under.value.overlaid_with(over->second->value)});
   }
   for (const Entry& over : overs) {
-    if (given(own, over.key) == own.end()) merged.push_back(over);
+    if (!given.contains(over.key)) merged.push_back(over);
   }
   return merged;
 }

@@ -90,6 +90,13 @@ TEST_F(LoadExperimentTest, RefusalsNameLineKeyValueAndBound) {
   EXPECT_NE(refusal("name: a\nclearance_mm: [0, 1]\n").find("clearance_mm"), std::string::npos);
 }
 
+// Each of them looked for among all others would take ten minutes.
+TEST_F(LoadExperimentTest, OfAHundredThousandUnknownKeysTheFirstIsNamed) {
+  std::string text = "name: a\n";
+  for (int i = 0; i < 100'000; ++i) text += "k" + std::to_string(i) + ": 1\n";
+  EXPECT_TRUE(refusal(text).starts_with("x.yaml:2: k0: is an unknown key")) << refusal(text);
+}
+
 TEST_F(LoadExperimentTest, TheExperimentsOfTheTreeLoad) {
   const WorldRanges ranges = load_experiment(tests::in_tree("sim/experiments/box_on_table.yaml"));
   EXPECT_EQ(ranges.name, "box_on_table");
