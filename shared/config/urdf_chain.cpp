@@ -11,7 +11,7 @@
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/config/files.h"
-#include "shared/config/xml_nesting.h"
+#include "shared/config/xml_extent.h"
 #include "shared/ports/arm.h"
 
 namespace tenon::config {
@@ -21,8 +21,9 @@ constexpr double kTravelMax = 100.0;  // m or rad
 constexpr double kSpeedMax = 100.0;
 constexpr double kEffortMax = 1e5;
 constexpr double kMassMax_kg = 1e3;
-// The parser descends by recursion, and looks attributes up one by one.
+// The parser descends by recursion, and looks for each attribute among all others of its tag.
 constexpr std::size_t kNestingMax = 64;
+constexpr std::size_t kTagMax_bytes = 4096;
 constexpr std::size_t kUrdfMax_bytes = 1U << 20U;
 
 /// The parser reports to a global console instead of its caller, and goes on after some errors: the
@@ -49,10 +50,15 @@ urdf::ModelInterfaceSharedPtr parse(const std::filesystem::path& file) {
     throw InputError(file.string() + format(": is %zu bytes long, must be at most %zu", text.size(),
                                             kUrdfMax_bytes));
   }
-  if (const std::size_t depth = xml_nesting(text); depth > kNestingMax) {
+  const XmlExtent extent = xml_extent(text);
+  if (extent.depth > kNestingMax) {
     throw InputError(file.string() + format(": has elements %zu deep in each other, must be at "
                                             "most %zu",
-                                            depth, kNestingMax));
+                                            extent.depth, kNestingMax));
+  }
+  if (extent.tag_bytes > kTagMax_bytes) {
+    throw InputError(file.string() + format(": has a tag of %zu bytes, must be at most %zu",
+                                            extent.tag_bytes, kTagMax_bytes));
   }
   const FirstError error;
   std::string what;

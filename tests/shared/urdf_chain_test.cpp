@@ -175,6 +175,21 @@ TEST(UrdfChain, ElementsWithoutBottomAreRefusedByTheirDepth) {
             large.string() + ": is 1100000 bytes long, must be at most 1048576");
 }
 
+// The parser would look for each of their 100,000 attributes among the others, for a minute.
+TEST(UrdfChain, TagsWithoutEndAreRefusedByTheirLength) {
+  const ScratchFolder folder;
+  const std::string head = "<robot name=\"r\"";
+  const auto file = folder.put("long.urdf", head + std::string(4097 - head.size(), ' ') + ">");
+  EXPECT_EQ(refusal([&] { (void)config::read_urdf(file); }),
+            file.string() + ": has a tag of 4097 bytes, must be at most 4096");
+  std::string many = head;
+  for (int i = 0; i < 100'000; ++i) many += " a" + std::to_string(i) + "=''";
+  const auto endless = folder.put("endless.urdf", many + "/>");
+  EXPECT_EQ(refusal([&] { (void)config::read_urdf(endless); }),
+            endless.string() + ": has a tag of " + std::to_string(many.size() + 1) +
+                " bytes, must be at most 4096");
+}
+
 TEST(UrdfChain, AMissingFileIsNamed) {
   EXPECT_EQ(refusal([] { (void)config::read_urdf("nowhere/x.urdf"); }),
             "nowhere/x.urdf: cannot be read: No such file or directory");

@@ -1,4 +1,4 @@
-#include "shared/config/xml_nesting.h"
+#include "shared/config/xml_extent.h"
 
 #include <algorithm>
 
@@ -33,9 +33,9 @@ bool begins_a_name(char c) {
 
 }  // namespace
 
-std::size_t xml_nesting(std::string_view text) {
+XmlExtent xml_extent(std::string_view text) {
+  XmlExtent most;
   std::size_t depth = 0;
-  std::size_t deepest = 0;
   std::size_t i = 0;
   while ((i = text.find('<', i)) != std::string_view::npos) {
     const std::string_view rest = text.substr(i);
@@ -48,14 +48,15 @@ std::size_t xml_nesting(std::string_view text) {
       i = behind(text, i, ">");
     } else if (rest.size() > 1 && begins_a_name(rest[1])) {
       const std::size_t end = end_of_tag(text, i);
-      deepest = std::max(deepest, depth + 1);
+      most.depth = std::max(most.depth, depth + 1);
+      most.tag_bytes = std::max(most.tag_bytes, end - i);
       depth += text[end - 1] == '/' ? 0 : 1;
       i = std::min(end + 1, text.size());
     } else {
       i = behind(text, i, ">");
     }
   }
-  return deepest;
+  return most;
 }
 
 }  // namespace tenon::config
