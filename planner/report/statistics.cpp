@@ -16,6 +16,8 @@ namespace tenon::planner {
 namespace {
 
 using Json = nlohmann::ordered_json;
+// Finds a key without looking through all others, of which a file may hold a million.
+using ReadJson = nlohmann::json;
 
 constexpr std::size_t kCourseMax = 200;  // expansions of a course that are told
 constexpr const char* kPhases[] = {"attractors", "search", "certification", "validation"};
@@ -87,7 +89,7 @@ struct Wrong {
   std::string what;
 };
 
-double number(const Json& json, double least = 0.0) {
+double number(const ReadJson& json, double least = 0.0) {
   const double value = json.get<double>();
   if (!json.is_number() || !(value >= least)) {
     throw Wrong{format("a number is %g, must be at least %g", value, least)};
@@ -97,27 +99,27 @@ double number(const Json& json, double least = 0.0) {
 
 /// Of lists and objects no more than that they are: printing them takes as many calls as they are
 /// deep.
-std::string shown(const Json& json) {
+std::string shown(const ReadJson& json) {
   return json.is_structured() ? std::string(json.type_name()) : json.dump();
 }
 
-std::uint64_t count(const Json& json) {
+std::uint64_t count(const ReadJson& json) {
   if (!json.is_number_unsigned()) throw Wrong{"a count is none: " + shown(json)};
   return json.get<std::uint64_t>();
 }
 
-const Json& list(const Json& json) {
+const ReadJson& list(const ReadJson& json) {
   if (!json.is_array()) throw Wrong{"a list is none: " + shown(json)};
   return json;
 }
 
-std::string words(const Json& json) { return printable(json.get<std::string>()); }
+std::string words(const ReadJson& json) { return printable(json.get<std::string>()); }
 
-SearchRound round_of(const Json& json, std::size_t heuristics) {
+SearchRound round_of(const ReadJson& json, std::size_t heuristics) {
   SearchRound round;
   round.parameters.w1 = number(json.at("w1"), 1.0);
   round.parameters.w2 = number(json.at("w2"), 1.0);
-  for (const Json& expansions : list(json.at("expansions"))) {
+  for (const ReadJson& expansions : list(json.at("expansions"))) {
     round.expansions.push_back(count(expansions));
   }
   if (round.expansions.size() != heuristics) {
@@ -130,10 +132,10 @@ SearchRound round_of(const Json& json, std::size_t heuristics) {
   return round;
 }
 
-void take_course(const Json& json, SearchStory& story) {
-  const Json& expansions = list(json.at("expansions"));
-  const Json& lower_bounds = list(json.at("lower_bound"));
-  const Json& costs = list(json.at("cost"));
+void take_course(const ReadJson& json, SearchStory& story) {
+  const ReadJson& expansions = list(json.at("expansions"));
+  const ReadJson& lower_bounds = list(json.at("lower_bound"));
+  const ReadJson& costs = list(json.at("cost"));
   const std::size_t size = expansions.size();
   if (lower_bounds.size() != size || costs.size() != size || size == 1 || size > kCourseMax + 1) {
     throw Wrong{format("the course of the search has %zu, %zu and %zu values", size,
@@ -150,7 +152,7 @@ void take_course(const Json& json, SearchStory& story) {
   }
 }
 
-SearchStory story_of(const Json& json, std::span<const std::uint8_t> plan) {
+SearchStory story_of(const ReadJson& json, std::span<const std::uint8_t> plan) {
   if (json.at("status") != to_string(PlanStatus::kPlanned)) {
     throw Wrong{"there is no plan that it could be of: " + words(json.at("status"))};
   }
@@ -158,16 +160,16 @@ SearchStory story_of(const Json& json, std::span<const std::uint8_t> plan) {
     throw Wrong{"it is of another plan"};
   }
   SearchStory story;
-  for (const Json& name : list(json.at("heuristics"))) story.heuristics.push_back(words(name));
+  for (const ReadJson& name : list(json.at("heuristics"))) story.heuristics.push_back(words(name));
   story.guide = words(json.at("guide"));
   story.bound = number(json.at("bound"));
   story.states = count(json.at("states"));
-  for (const Json& round : list(json.at("searches"))) {
+  for (const ReadJson& round : list(json.at("searches"))) {
     story.rounds.push_back(round_of(round, story.heuristics.size()));
   }
   take_course(json.at("course"), story);
   for (const char* phase : kPhases) {
-    const Json& moves = json.at("moves").at(phase);
+    const ReadJson& moves = json.at("moves").at(phase);
     story.phases.push_back({phase, number(json.at("time_s").at(phase)),
                             count(moves.is_object() ? moves.at("simulated") : moves)});
   }
@@ -210,8 +212,8 @@ SearchStory read_statistics(const std::string& file, const std::string& text,
                       "; give the file that tenon-plan wrote with --json when it wrote the plan");
   };
   try {
-    return story_of(Json::parse(text), plan);
-  } catch (const Json::exception& error) {
+    return story_of(ReadJson::parse(text), plan);
+  } catch (const ReadJson::exception& error) {
     throw refused(printable(error.what()));
   } catch (const Wrong& wrong) {
     throw refused(wrong.what);

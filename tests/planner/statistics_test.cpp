@@ -105,6 +105,15 @@ TEST(Statistics, ListsWithinListsAreRefusedHoweverDeep) {
   }
 }
 
+// Each of them looked for among all others would take a quarter of an hour.
+TEST(Statistics, SixHundredThousandKeysThatAreNoneOfThemAreRefused) {
+  std::string text = "{";
+  for (int i = 0; i < 600'000; ++i) text += "\"k" + std::to_string(i) + "\":1,";
+  text.back() = '}';
+  EXPECT_THAT(tests::refusal([&] { (void)read_statistics("stats.json", text, {}); }),
+              HasSubstr("key 'status' not found"));
+}
+
 TEST(Statistics, WhatIsMissingOrWrongIsRefusedInALine) {
   const PlanReport report = planned(room_task());
   const json whole = json::parse(statistics_json(report, room_task()));
