@@ -6,7 +6,7 @@
 //
 // It walks the plan's guarded moves, ends each by what is measured, goes on by its outcome, and
 // applies the plan's admittance law. It is the core that tenon-exec runs (motion/plan_runner.h,
-// motion/compliant_tool.h), without what makes an arm of it: it knows neither joints nor cell, so
+// motion/commanded_tool.h), without what makes an arm of it: it knows neither joints nor cell, so
 // bounds on force, speed and reach, the taring and the payload of the sensor, the way to the start
 // and every stop are the caller's. For a whole arm behind the arm port take loop/controller.h; to
 // hold a plan against a cell beforehand, dry_run/dry_run.h and dry_run/plan_check.h.
@@ -16,7 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "executor/motion/compliant_tool.h"
+#include "executor/motion/commanded_tool.h"
 #include "executor/motion/plan_runner.h"
 #include "shared/math/pose.h"
 #include "shared/motion/setpoint.h"
@@ -72,7 +72,7 @@ class PlanExecutor {
   std::int64_t cycle_ns_;
   std::int64_t time_ns_ = 0;
   PlanRunner runner_;
-  CompliantTool tool_;
+  CommandedTool tool_;
 };
 
 }  // namespace tenon::executor

@@ -13,7 +13,7 @@
 #include "executor/dry_run/dry_run.h"
 #include "executor/dry_run/plan_reach.h"
 #include "executor/loop/control_task.h"
-#include "executor/motion/compliant_tool.h"
+#include "executor/motion/commanded_tool.h"
 #include "executor/motion/joint_move.h"
 #include "executor/motion/pace.h"
 #include "executor/motion/plan_runner.h"
@@ -84,7 +84,7 @@ class Controller : public ControlTask {
   std::optional<JointVector> start_;  ///< joints, as the dry run found them
   std::optional<ReachBox> done_reach_;
   Parameters parameters_;
-  CompliantTool tool_;
+  CommandedTool tool_;
   PlanRunner runner_;
 
   std::atomic<bool> allowed_{false};

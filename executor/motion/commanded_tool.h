@@ -9,9 +9,9 @@
 
 namespace tenon::executor {
 
-class CompliantTool {
+class CommandedTool {
  public:
-  explicit CompliantTool(const Compliance& compliance) : law_(compliance) {}
+  explicit CommandedTool(const Compliance& compliance) : law_(compliance) {}
 
   void rest_at(const Pose& pose) { law_.reset({pose}); }
 
