@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstdio>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -11,8 +13,10 @@
 #include "executor/dry_run/plan_check.h"
 #include "shared/config/load.h"
 #include "sim/cell/faults/fault_spec.h"
+#include "tests/support/commands.h"
 #include "tests/support/places.h"
 #include "tests/support/planned.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/sensor_faults.h"
 #include "tests/support/whole_run.h"
 
@@ -37,7 +41,14 @@ const char* const kAfter10 = "no new wrench in 11 cycles in a row, at most 10";
 const char* const kAfter15 = "no new wrench in 16 cycles in a row, at most 15";
 
 // Asked by every third SYNC.
-const SensorCase kSlow{"slow_sensor_gantry3", 3, {silence("stale-force", kAfter15)}};
+const SensorCase kSlow{
+    "slow_sensor_gantry3",
+    3,
+    {silence("stale-force", kAfter15),
+     silence("torn-force", kAfter15),
+     {"frozen-force", "wrench_frozen", ""},
+     {"saturated-force", "sensor_saturated", "sensor axis x reads 300 N, its range ends at 300"},
+     {"overrange-force", "arm_fault: sensor_invalid", "0xFF01"}}};
 // Robotous RFT: streams at 200 Hz by a clock of its own.
 const SensorCase kRft{
     "rft_gantry3",
@@ -45,14 +56,16 @@ const SensorCase kRft{
     {silence("stale-force", kAfter15),
      silence("torn-force", kAfter15),
      {"frozen-force", "wrench_frozen", ""},
-     {"saturated-force", "sensor_saturated", "sensor axis x reads 200 N, its range ends at 200"}}};
+     {"saturated-force", "sensor_saturated", "sensor axis x reads 200 N, its range ends at 200"},
+     {"overrange-force", "arm_fault: sensor_invalid", "reports overload 0x04 (fz)"}}};
 // ATI NETCANOEM: polled at 250 Hz.
 const SensorCase kNetcanoem{"ati_gantry3",
                             2,
                             {silence("stale-force", kAfter10),
                              silence("torn-force", kAfter10),
                              {"frozen-force", "wrench_frozen", ""},
-                             {"saturated-force", "sensor_saturated", "its range ends at 290"}}};
+                             {"saturated-force", "sensor_saturated", "its range ends at 290"},
+                             {"overrange-force", "sensor_saturated", "sensor axis rx"}}};
 
 class ContactSensors : public testing::TestWithParam<SensorCase> {
  protected:
@@ -89,15 +102,47 @@ TEST_P(ContactSensors, EachFaultOfItEndsByItsNameInItsTime) {
 INSTANTIATE_TEST_SUITE_P(Tree, ContactSensors, testing::Values(kSlow, kRft, kNetcanoem),
                          [](const auto& each) { return each.param.cell; });
 
+std::string cell_file(const std::string& name) {
+  return in_tree(name == "gantry3" ? "hw/cells/gantry3.yaml"
+                                   : "tests/plans/" + name + "/cell.yaml");
+}
+
+// By what a user types, in worlds that are drawn for every run. The seed was fixed before any of
+// these runs.
+class BoxBySensor : public testing::TestWithParam<const char*> {};
+
+TEST_P(BoxBySensor, EndsAtTheGoalInTwoHundredDrawnWorlds) {
+  constexpr int kRuns = 200;
+  const ScratchFolder folder;
+  const std::string task = in_tree("planner/tasks/box_on_table_2d.yaml");
+  const std::string plan = folder.path() / "box.tnp";
+  const Ended planned = run(folder, {executable("tenon-plan"), task, "--start", "1", "--cell",
+                                     cell_file(GetParam()), "-o", plan});
+  ASSERT_EQ(planned.status, 0) << planned.err;
+  const std::string json = folder.path() / "evaluated.json";
+  const Ended evaluated =
+      run(folder, {executable("tenon-evaluate"), "--cell", cell_file(GetParam()), "--task", task,
+                   "--plan", plan, "-n", std::to_string(kRuns), "--seed", "90210", "--experiment",
+                   in_tree("sim/experiments/box_on_table.yaml"), "--json", json});
+  ASSERT_EQ(evaluated.status, 0) << evaluated.err;
+  std::printf("%s", evaluated.out.c_str());
+  const auto result = nlohmann::json::parse(folder.get("evaluated.json"));
+  const auto& summary = result.at("plans")[0].at("summary");
+  EXPECT_EQ(summary.at("done_but_wrong").get<int>(), 0);
+  EXPECT_GE(summary.at("success").at("succeeded").get<int>(), kRuns * 98 / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Full, BoxBySensor,
+                         testing::Values("gantry3", "slow_sensor_gantry3", "rft_gantry3",
+                                         "ati_gantry3"),
+                         [](const auto& each) { return std::string(each.param); });
+
 // What no frame tells: the payload's weight does, where the cell knows what the sensor reads of
 // itself, and before anything has moved.
 class MiscalibratedSensors : public testing::TestWithParam<const char*> {};
 
 TEST_P(MiscalibratedSensors, AnotherUnitOrMatrixIsNamedByTheTare) {
-  const std::string folder = GetParam() == std::string("gantry3")
-                                 ? "hw/cells/gantry3.yaml"
-                                 : "tests/plans/" + std::string(GetParam()) + "/cell.yaml";
-  Cell cell = load_cell(in_tree(folder));
+  Cell cell = load_cell(cell_file(GetParam()));
   cell.sensor_bias = SensorBias{.force_tolerance_N = 1.5, .torque_tolerance_Nm = 0.5};
   const auto [task, plan] = planned_box(cell, "1");
   for (const char* fault :

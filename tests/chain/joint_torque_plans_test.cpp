@@ -108,7 +108,7 @@ class BoxByTorque : public ::testing::TestWithParam<int> {
 
 // The rougher drives are, the more of the runs stop by name; none is wrong.
 TEST_P(BoxByTorque, IsPlannedSlowerAndDone) {
-  const std::pair<double, int> cases[] = {{0.02, runs - 1}, {0.10, runs * 3 / 4}};
+  const std::pair<double, int> cases[] = {{0.02, runs * 98 / 100}, {0.10, runs * 3 / 4}};
   for (const auto& [share, at_least] : cases) {
     const Ended planned = plan_at(share);
     ASSERT_EQ(planned.status, 0) << planned.err;
@@ -123,7 +123,7 @@ TEST_P(BoxByTorque, IsPlannedSlowerAndDone) {
 
 INSTANTIATE_TEST_SUITE_P(Tree, BoxByTorque, ::testing::Values(8),
                          ::testing::PrintToStringParamName());
-INSTANTIATE_TEST_SUITE_P(Full, BoxByTorque, ::testing::Values(50),
+INSTANTIATE_TEST_SUITE_P(Full, BoxByTorque, ::testing::Values(200),
                          ::testing::PrintToStringParamName());
 
 }  // namespace

@@ -313,5 +313,18 @@ TEST(DeviceFaultsTest, ASaturatedSensorReadsItsRangeAndSaysSo) {
   EXPECT_EQ(bench.value({0x2002}), 1U);
 }
 
+TEST(DeviceFaultsTest, AnOverloadedSensorSaysSoInAnEmergencyAndWhenItIsOver) {
+  SensorBench bench;
+  bench.start();
+  bench.sensor.inject({.kind = FaultKind::kOverrangeForce, .duration_s = 0.01});
+  bench.sync(2);
+  EXPECT_EQ(bench.emergencies(), (Emergencies{{0xFF01, 0x81}}));
+  EXPECT_EQ(bench.value({0x2002}), 1U);
+  bench.pass(11);
+  bench.sync();
+  EXPECT_EQ(bench.emergencies(), (Emergencies{{0x0000, 0x00}}));
+  EXPECT_EQ(bench.value({0x2002}), 0U);
+}
+
 }  // namespace
 }  // namespace tenon::sim

@@ -41,18 +41,19 @@ TEST_F(NetcanoemSensorTest, AnswersWithUnitsCountsAndRows) {
   EXPECT_EQ(asked({0x177, false, false, 0, {}}),
             (std::vector<CanFrame>{
                 {0x177, false, false, 8, {0x00, 0x0F, 0x42, 0x40, 0x00, 0x0F, 0x42, 0x40}}}));
-  // 256 N are 256e6 counts and 16000 of the first gauge: 16000.0 = 467A0000h. Of the fourth
-  // nothing.
-  const auto row = asked({0x172, false, false, 1, {0}});
-  ASSERT_EQ(row.size(), 3U);
-  EXPECT_EQ(row[0].id, 0x172U);
-  EXPECT_EQ(row[1].id, 0x173U);
-  EXPECT_EQ(row[2].id, 0x174U);
-  for (const CanFrame& part : row) EXPECT_EQ(part.length, 8);
-  EXPECT_EQ((std::vector<std::uint8_t>(row[0].data.begin(), row[0].data.begin() + 4)),
-            (std::vector<std::uint8_t>{0x46, 0x7A, 0x00, 0x00}));
-  EXPECT_EQ((std::vector<std::uint8_t>(row[1].data.begin() + 4, row[1].data.end())),
-            (std::vector<std::uint8_t>{0x00, 0x00, 0x00, 0x00}));
+  // 256 N are 256e6 counts and 16000 of the first gauge: 16000.0, and of the others less:
+  // 1280.0, 640.0, 0.0, -640.0, -1280.0.
+  EXPECT_EQ(asked({0x172, false, false, 1, {0}}),
+            (std::vector<CanFrame>{
+                {0x172, false, false, 8, {0x46, 0x7A, 0x00, 0x00, 0x44, 0xA0, 0x00, 0x00}},
+                {0x173, false, false, 8, {0x44, 0x20, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}},
+                {0x174, false, false, 8, {0xC4, 0x20, 0x00, 0x00, 0xC4, 0xA0, 0x00, 0x00}}}));
+  // 16 Nm and the last gauge: 80.0, 40.0, 0.0, -40.0, -80.0, 1000.0.
+  EXPECT_EQ(asked({0x172, false, false, 1, {5}}),
+            (std::vector<CanFrame>{
+                {0x172, false, false, 8, {0x42, 0xA0, 0x00, 0x00, 0x42, 0x20, 0x00, 0x00}},
+                {0x173, false, false, 8, {0x00, 0x00, 0x00, 0x00, 0xC2, 0x20, 0x00, 0x00}},
+                {0x174, false, false, 8, {0xC2, 0xA0, 0x00, 0x00, 0x44, 0x7A, 0x00, 0x00}}}));
   EXPECT_TRUE(asked({0x172, false, false, 1, {6}}).empty());
 }
 
@@ -83,6 +84,14 @@ TEST_F(NetcanoemSensorTest, SaturatedGaugesAreAtTheirEnds) {
   board.inject(parse_fault("saturated-force:time_s=0"));
   EXPECT_EQ(gauges()[0],
             (CanFrame{0x170, false, false, 8, {0x00, 0x00, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF}}));
+}
+
+TEST_F(NetcanoemSensorTest, AnOverloadIsAGaugeAtItsEndTheOthersAsTheyAre) {
+  board.inject(parse_fault("overrange-force:time_s=0"));
+  EXPECT_EQ(gauges(),
+            (std::vector<CanFrame>{
+                {0x170, false, false, 8, {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}},
+                {0x171, false, false, 6, {0x00, 0x00, 0x7F, 0xFF, 0x00, 0x00}}}));
 }
 
 TEST_F(NetcanoemSensorTest, OthersFramesAreNotForIt) {

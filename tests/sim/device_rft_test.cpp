@@ -90,6 +90,15 @@ TEST_F(RftSensorTest, SaysWhichAxesAreOverloaded) {
   EXPECT_EQ(frames[1].data[5], 0b100001);
 }
 
+TEST_F(RftSensorTest, AnOverloadIsABitBesideAWrenchWithinItsRange) {
+  sensor.inject(parse_fault("overrange-force:time_s=0"));
+  command(0x0B);
+  const auto frames = passed(5);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0], (CanFrame{0x01, false, false, 8, {0x0B}}));
+  EXPECT_EQ(frames[1], (CanFrame{0x02, false, false, 8, {0, 0, 0, 0, 0, 0b000100}}));
+}
+
 TEST_F(RftSensorTest, ATornSampleLacksAFrameAndAStaleOneBoth) {
   command(0x0B);
   (void)passed(10);

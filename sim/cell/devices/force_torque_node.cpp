@@ -9,6 +9,7 @@ namespace {
 constexpr std::uint32_t kMeasuringDevice = 0x00000194;  // 1000h: CiA 404
 constexpr std::uint32_t kSensorProductCode = 0x0404;
 constexpr std::uint16_t kTare = 0x2003;
+constexpr std::uint16_t kOverload = 0xFF01;  // of the device's own (CiA 301, 7.2.7.1)
 
 constexpr std::uint32_t mapping(std::uint16_t index, std::uint8_t sub) {
   return static_cast<std::uint32_t>(index) << 16 | static_cast<std::uint32_t>(sub) << 8 | 16U;
@@ -96,8 +97,10 @@ void ForceTorqueNode::on_sample() {
   }
   ++counter_;
   node_.dictionary().set(object_id(canopen::kSampleCounter), counter_);
-  node_.dictionary().set(object_id(canopen::kSensorStatus),
-                         sample.saturated != 0 ? kStatusSaturated : kStatusGood);
+  node_.dictionary().set(
+      object_id(canopen::kSensorStatus),
+      sample.saturated != 0 || sample.overrange ? kStatusSaturated : kStatusGood);
+  sample.overrange ? node_.raise_error(kOverload) : node_.clear_error(kOverload);
 }
 
 void ForceTorqueNode::inject(const Fault& fault) {

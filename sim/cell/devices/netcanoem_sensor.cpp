@@ -11,6 +11,8 @@ namespace tenon::sim {
 namespace {
 
 constexpr double kGaugeMax = 32767.0;
+/// The gauge that an overload drives to its end.
+constexpr std::size_t kOverloaded = 3;
 /// What a range makes of the gauges, so that there is room beyond it.
 constexpr double kGaugeAtRange = 16000.0;
 constexpr std::uint32_t kCountsPerNewton = 1'000'000;
@@ -85,6 +87,8 @@ void NetcanoemSensor::answer_gauges() {
     const double held = sample.forced ? kGaugeMax : std::clamp(gauge, -kGaugeMax, kGaugeMax);
     raw[i] = static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(held)));
   }
+  // An overload is a gauge at its end, whatever the matrix makes of it.
+  if (sample.overrange) raw[kOverloaded] = static_cast<std::uint16_t>(kGaugeMax);
   Bytes first{};
   Bytes second{};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -12,6 +12,7 @@ namespace {
 
 constexpr unsigned kFirst = 1;
 constexpr unsigned kSecond = 2;
+constexpr std::uint8_t kOverloadAlongZ = 0b000100;
 constexpr std::uint8_t kWrongParameter = 3;  // of the sensor's own: error codes are not known
 
 }  // namespace
@@ -65,7 +66,7 @@ void RftSensor::stream(std::int64_t now_ns) {
     response[1 + 2 * axis] = static_cast<std::uint8_t>(count >> 8U);
     response[2 + 2 * axis] = static_cast<std::uint8_t>(count & 0xFFU);
   }
-  response[13] = sample.saturated;
+  response[13] = sample.overrange ? kOverloadAlongZ : sample.saturated;
   if (!torn) return send(response, kFirst | kSecond);
   tore_first_ = !tore_first_;
   send(response, tore_first_ ? kFirst : kSecond);

@@ -53,6 +53,7 @@ void WrenchSampler::measured(const Vector6& wrench, std::int64_t step_ns) {
 
 const WrenchSampler::Sample& WrenchSampler::sample() {
   const bool saturated = faults_.strikes(FaultKind::kSaturatedForce);
+  sample_.overrange = faults_.strikes(FaultKind::kOverrangeForce);
   if (faults_.strikes(FaultKind::kFrozenForce)) return sample_;
   sample_.saturated = 0;
   sample_.forced = saturated;

@@ -28,6 +28,7 @@ class WrenchSampler {
     std::array<std::int16_t, 6> counts{};  ///< the same, rounded
     std::uint8_t saturated = 0;            ///< bit i: axis i is at its range
     bool forced = false;                   ///< a fault has put all there
+    bool overrange = false;                ///< a fault makes the sensor tell that it is overloaded
   };
 
   WrenchSampler(const ForceTorqueSensor& sensor, std::uint64_t seed,
@@ -44,8 +45,8 @@ class WrenchSampler {
   /// From now on what it measures now is its zero, or no more.
   void tare(bool on);
 
-  /// Stale, torn, saturated and frozen force strike each sample by their probability; drifting and
-  /// forged force, wrong units and a wrong matrix last.
+  /// Stale, torn, saturated, frozen and overrange force strike each sample by their probability;
+  /// drifting and forged force, wrong units and a wrong matrix last.
   void inject(const Fault& fault);
   /// Draws: what is not the wrench's own is its face's to carry out.
   [[nodiscard]] bool strikes(FaultKind kind) { return faults_.strikes(kind); }

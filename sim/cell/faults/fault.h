@@ -34,11 +34,12 @@ enum class FaultKind : std::uint8_t {
   kSlowBrake = 18,    ///< the brake holds `value` seconds after its output; the drive waits less
   kResumesStop = 19,  ///< a quick stop is over as soon as an enable word from before it is found
   // In the sensor, beside the three above.
-  kFrozenForce = 20,    ///< the wrench stays as it was, the counter runs on
-  kDriftingForce = 21,  ///< the force along x moves away by `value` newtons a second
-  kForgedForce = 22,    ///< the force along x reads `value` newtons more
-  kWrongUnits = 23,     ///< it reads `value` times what it feels, as if in another unit
-  kWrongMatrix = 24,    ///< x reads y, y reads z, z reads x, as by another sensor's calibration
+  kFrozenForce = 20,     ///< the wrench stays as it was, the counter runs on
+  kDriftingForce = 21,   ///< the force along x moves away by `value` newtons a second
+  kForgedForce = 22,     ///< the force along x reads `value` newtons more
+  kWrongUnits = 23,      ///< it reads `value` times what it feels, as if in another unit
+  kWrongMatrix = 24,     ///< x reads y, y reads z, z reads x, as by another sensor's calibration
+  kOverrangeForce = 25,  ///< it tells by its own means that it is loaded beyond its range
 };
 
 /// Who carries it out.
@@ -79,6 +80,7 @@ enum class FaultTarget : std::uint8_t {
     case FaultKind::kForgedForce:
     case FaultKind::kWrongUnits:
     case FaultKind::kWrongMatrix:
+    case FaultKind::kOverrangeForce:
       return FaultTarget::kSensor;
   }
   return FaultTarget::kBus;

@@ -25,7 +25,7 @@ struct Kind {
   const char* example = "";
 };
 
-constexpr std::array<Kind, 25> kKinds{{
+constexpr std::array<Kind, 26> kKinds{{
     {FaultKind::kDrop, "drop", false, nullptr, 0, 0, "a frame is lost for all receivers",
      "drop:node=3,time_s=2,duration_s=0.5,probability=0.1,seed=7"},
     {FaultKind::kDelay, "delay", false, "delay_s", 1e-6, 10.0, "a frame arrives delay_s late",
@@ -89,6 +89,9 @@ constexpr std::array<Kind, 25> kKinds{{
     {FaultKind::kWrongMatrix, "wrong-matrix", false, nullptr, 0, 0,
      "the sensor's x reads y, y reads z and z reads x, as by another sensor's calibration",
      "wrong-matrix:time_s=0"},
+    {FaultKind::kOverrangeForce, "overrange-force", false, nullptr, 0, 0,
+     "the sensor tells by its own means that it is loaded beyond its range",
+     "overrange-force:at=contact,duration_s=0.01"},
 }};
 
 constexpr std::array<std::string_view, kFaultPhases> kPhaseNames = {"enabling", "free", "sliding",

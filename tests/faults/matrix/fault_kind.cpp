@@ -72,6 +72,7 @@ std::vector<FaultKind> kinds_of_devices() {
       spec("force torn", "torn-force:duration_s=100", stale),
       spec("force stale", "stale-force:duration_s=100", stale),
       spec("force saturated", "saturated-force:duration_s=100", ends),
+      spec("force overrange", "overrange-force:duration_s=100", ends),
       spec("force beyond its limit", "forged-force:force_N=80",
            {fault_row(EndReason::kForceFault)}),
       {"encoder jump",
