@@ -32,13 +32,30 @@ inline std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// What a word that no argument takes was meant as: a subcommand, or the file of an option.
+inline std::string argument_meant(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands(nullptr)) names.push_back(sub->get_name());
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  const std::string meant = did_you_mean(word, known);
+  if (!meant.empty()) return ": is no subcommand" + meant + " See --help";
+  if (word.ends_with(".tnp") && app.get_option_no_throw("--plan") != nullptr) {
+    return ": a plan goes with --plan; see --help";
+  }
+  return {};
+}
+
 /// The line for bad usage. A name that is not known comes before what is missing: who misspells a
 /// required option has given it.
 inline std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> names = option_names(app);
   const std::vector<std::string_view> known(names.begin(), names.end());
   for (const std::string& word : app.remaining(true)) {
-    if (!word.starts_with("--")) continue;
+    if (!word.starts_with("--")) {
+      const std::string meant = argument_meant(app, word);
+      if (!meant.empty()) return word + meant;
+      continue;
+    }
     const std::string meant = did_you_mean(word.substr(0, word.find('=')), known);
     if (meant.empty()) continue;
     std::string line = word;

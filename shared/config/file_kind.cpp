@@ -48,6 +48,24 @@ bool has_one_of(const Value& document, const std::vector<std::string_view>& keys
                      [&](std::string_view key) { return document.peek(key).has_value(); });
 }
 
+const Kind* kind_of(const Value& document) {
+  const auto found = std::find_if(kinds().begin(), kinds().end(), [&](const Kind& kind) {
+    return has_one_of(document, kind.telling);
+  });
+  return found == kinds().end() ? nullptr : &*found;
+}
+
+std::string mistaken(const Kind& kind, const std::string& wanted) {
+  const std::string name(kind.name);
+  return "is " + name + ", not " + wanted + "; " + name + " " + std::string(kind.where);
+}
+
+/// The sync word that every event of LCM's log format begins with.
+bool is_lcm_log(const std::string& text) { return text.starts_with("\xED\xA1\xDA\x01"); }
+
+constexpr const char* kIsLog =
+    "is a log of messages, which tenon-inspect reads with --log and tenon-monitor with export";
+
 }  // namespace
 
 void expect_kind(const std::filesystem::path& file, const Value& document, FileKind wanted) {
@@ -55,16 +73,26 @@ void expect_kind(const std::filesystem::path& file, const Value& document, FileK
   const auto own = std::find_if(kinds().begin(), kinds().end(),
                                 [wanted](const Kind& kind) { return kind.kind == wanted; });
   if (has_one_of(document, own->telling)) return;
-  for (const Kind& other : kinds()) {
-    if (!has_one_of(document, other.telling)) continue;
-    const std::string name(other.name);
-    std::string line = file.string();
-    line.append(": is ").append(name).append(", not ").append(own->name);
-    throw InputError(line.append("; ").append(name).append(" ").append(other.where));
+  if (const Kind* other = kind_of(document)) {
+    throw InputError(file.string() + ": " + mistaken(*other, std::string(own->name)));
   }
 }
 
-void expect_no_plan(const std::filesystem::path& file, const std::string& text) {
+std::string kind_told(const std::filesystem::path& file, const std::string& text) {
+  if (is_lcm_log(text)) return kIsLog;
+  try {
+    const Value document = Value::parse(file, text);
+    const Kind* kind = document.is_mapping() ? kind_of(document) : nullptr;
+    return kind == nullptr ? std::string() : mistaken(*kind, "a plan file");
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+void expect_text(const std::filesystem::path& file, const std::string& text) {
+  if (is_lcm_log(text)) {
+    throw InputError(file.string() + ": " + kIsLog + "; here a YAML file is asked for");
+  }
   // Whatever else may be wrong with it.
   const DecodedPlan plan =
       decode_plan({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});

@@ -24,7 +24,11 @@ enum class FileKind : std::uint8_t {
 /// what is missing. @throws InputError
 void expect_kind(const std::filesystem::path& file, const Value& document, FileKind wanted);
 
-/// Refuses the text of a plan where YAML was asked for. @throws InputError
-void expect_no_plan(const std::filesystem::path& file, const std::string& text);
+/// Refuses a plan or a log of messages where YAML was asked for. @throws InputError
+void expect_text(const std::filesystem::path& file, const std::string& text);
+
+/// What a text is that is no plan: "is a task file, not a plan file; a task file goes first with
+/// tenon-plan, elsewhere with --task"; nothing where it cannot be told.
+[[nodiscard]] std::string kind_told(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace tenon::config

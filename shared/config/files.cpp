@@ -35,6 +35,10 @@ std::string file_meant(const std::filesystem::path& file) {
     if (names.size() >= kFilesMax) break;
   }
   std::sort(names.begin(), names.end());
+  for (const std::string& name : names) {
+    const bool lacks_its_end = std::filesystem::path(name).stem() == file.filename();
+    if (lacks_its_end) return "; did you mean " + name + "?";
+  }
   const std::vector<std::string_view> known(names.begin(), names.end());
   return did_you_mean(file.filename().string(), known);
 }

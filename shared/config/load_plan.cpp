@@ -1,4 +1,5 @@
 #include "shared/base/error.h"
+#include "shared/config/file_kind.h"
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/plan/codec.h"
@@ -10,6 +11,11 @@ Plan load_plan(const std::filesystem::path& file) {
   DecodedPlan decoded =
       decode_plan({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   if (!decoded.plan) {
+    if (!text.starts_with("TNP")) {
+      const std::string told = config::kind_told(file, text);
+      throw InputError(file.string() + ": " +
+                       (told.empty() ? "is not a plan file, which tenon-plan -o writes" : told));
+    }
     throw InputError(file.string() + ": byte " + std::to_string(decoded.offset) + ", " +
                      decoded.field + ": " + to_string(decoded.error) + "; plan again");
   }

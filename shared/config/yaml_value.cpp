@@ -60,7 +60,7 @@ Value::Value(std::shared_ptr<const std::string> file, std::string path, const YA
 
 Value Value::parse(const std::filesystem::path& file, const std::string& text) {
   auto name = std::make_shared<const std::string>(file.string());
-  expect_no_plan(file, text);
+  expect_text(file, text);
   try {
     const int documents = yaml_documents(text);
     if (documents != 1) {

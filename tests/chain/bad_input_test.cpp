@@ -116,7 +116,8 @@ TEST(BadInput, OfTheExecutorIsOneLineAndStatusTwo) {
       {execute("none.yaml", plan, kNobody), {"none.yaml", "cannot be read"}},
       {execute(cell, plans.other_version, kNobody), {"version.tnp", "version", "plan again"}},
       {execute(cell, plans.truncated, kNobody), {"short.tnp", "length", "cut off"}},
-      {execute(cell, cell, kNobody), {"gantry3.yaml", "not a plan file"}},
+      {execute(cell, cell, kNobody),
+       {"gantry3.yaml", "is a cell file, not a plan file", "goes with --cell"}},
       {execute(cell, plan, kNobody), {kNobody, "cannot connect", "tenon-sim"}},
       {execute(cell, plan, "socketcan:nosuch0"), {"socketcan:nosuch0"}},
       {execute(cell, plan, "slcan-listen://127.0.0.1:0"), {"slcan-listen", "slcan://HOST:PORT"}},
@@ -233,6 +234,32 @@ TEST(BadInput, OfInspectorMonitorAndBusToolIsOneLineAndStatusTwo) {
       {{can, "check", robot, "--eds", robot}, {"robot.yaml:1", "no object"}},
       {{can, "check", robot, "--eds", "9=" + twin}, {"9=", "no joint"}},
       {{can, "check", robot, "--eds", twin, "--eds", twin}, {"epos4.eds", "its node"}},
+  };
+  for (const BadInput& bad : table) expect_refused(folder, bad);
+}
+
+// Each was typed by somebody who had it nearly right.
+TEST(BadInput, WhatIsGivenInAnothersPlaceIsToldWhereItGoes) {
+  const ScratchFolder folder;
+  const std::string cell = gantry_cell_file();
+  const std::string shortened = cell.substr(0, cell.size() - std::string(".yaml").size());
+  const std::string log = folder.put("run.lcmlog", std::string("\xED\xA1\xDA\x01") + "\x01\x02");
+  const std::string words = folder.put("words.txt", "no plan\n");
+  const std::string exec = executable("tenon-exec");
+  const std::string inspect = executable("tenon-inspect");
+  const std::string planner = executable("tenon-plan");
+  const std::string out = folder.path() / "out.tnp";
+  const std::vector<BadInput> table = {
+      {{inspect, box_task_file()},
+       {"box_on_table_2d.yaml", "is a task file, not a plan file", "first with tenon-plan"}},
+      {{inspect, log}, {"run.lcmlog", "is a log of messages", "--log"}},
+      {{inspect, words}, {"words.txt", "is not a plan file", "tenon-plan -o"}},
+      {{planner, log, "-o", out}, {"run.lcmlog", "is a log of messages", "a YAML file"}},
+      {{planner, box_task_file(), "--cell", shortened, "-o", out},
+       {"gantry3: cannot be read", "did you mean gantry3.yaml?"}},
+      {{exec, "--cell", cell, "run.tnp"}, {"run.tnp", "a plan goes with --plan"}},
+      {{executable("tenon-monitor"), "exprt", log}, {"exprt", "did you mean export?"}},
+      {{executable("tenon-can"), "--can", kNobody, "scna"}, {"scna", "did you mean scan?"}},
   };
   for (const BadInput& bad : table) expect_refused(folder, bad);
 }
