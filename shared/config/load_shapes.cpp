@@ -66,7 +66,12 @@ std::shared_ptr<const Solid> ShapeReader::read_mesh(const Value& value) {
   const double scale = map.number("scale", positive_to(kScaleMax));
   std::shared_ptr<const Solid>& solid = meshes_[{file, scale}];
   if (solid) return solid;
-  const std::string bytes = read_file(file);
+  std::string bytes;
+  try {
+    bytes = read_file(file);
+  } catch (const InputError& error) {
+    value.refuse(error.what());
+  }
   try {
     solid = std::make_shared<const Solid>(parse_part(file, bytes, scale));
   } catch (const InputError& error) {

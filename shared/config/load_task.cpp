@@ -48,15 +48,29 @@ CoordinateMask read_axes(const Value& value) {
 void read_errors(const Map& map, const char* key, int first_axis, CoordinateMask coordinates,
                  Vector6& error) {
   std::size_t count = 0;
-  for (int axis = first_axis; axis < first_axis + 3; ++axis) count += has(coordinates, axis);
+  std::string names;
+  for (int axis = first_axis; axis < first_axis + 3; ++axis) {
+    if (!has(coordinates, axis)) continue;
+    ++count;
+    names.append(" ").append(kAxisNames[axis]);
+  }
   if (count == 0) {
     if (const auto given = map.find(key)) given->refuse("no search coordinate has this unit");
     return;
   }
-  const std::vector<Value> values = map.at(key).list(count, count);
+  const Value given = map.at(key);
+  if (const std::size_t written = given.entries_written(); written != 0 && written != count) {
+    given.refuse(format("has %zu entries, must have %zu, for", written, count) + names);
+  }
+  const std::vector<Value> values = given.list(count, count);
   auto next = values.begin();
   for (int axis = first_axis; axis < first_axis + 3; ++axis) {
-    if (has(coordinates, axis)) error[axis] = (next++)->number(positive_to(1.0));
+    if (!has(coordinates, axis)) continue;
+    if (next->is_zero()) {
+      next->refuse_value(std::string("in (0, 1]; where ") + kAxisNames[axis] +
+                         " is known, leave it out of coordinates");
+    }
+    error[axis] = (next++)->number(positive_to(1.0));
   }
 }
 

@@ -68,9 +68,9 @@ std::string unit_hint(std::string_view path, double number, const Bounds& bounds
   const Unit* unit = unit_of(path);
   if (unit == nullptr || !std::isfinite(number)) return {};
   const double meant = number / unit->per_unit;
-  // Less is rather too much of the right unit, and nobody writes a fraction of a small unit.
+  // What is within the bounds is taken as written, and nobody writes a fraction of a small unit.
   const double bound = std::max(std::abs(bounds.low), std::abs(bounds.high));
-  const bool other_unit = std::abs(number) >= std::max(2.0 * bound, 1.0);
+  const bool other_unit = std::abs(number) >= std::max(1.5 * bound, 1.0);
   if (!other_unit || !bounds.holds(meant)) return {};
   return "; is it in " + std::string(unit->other) + "? then write " + format("%.4g", meant) + " " +
          std::string(unit->name);

@@ -86,8 +86,10 @@ void Value::refuse(const std::string& what) const {
 }
 
 void Value::refuse_value(const std::string& must_be) const {
-  const std::string value = node_.IsScalar() ? " = " + shortened(node_.Scalar(), kShownMax)
-                                             : " is " + std::string(kind_of(node_));
+  const bool whole = path_.empty() && node_.IsScalar();
+  const std::string value = whole ? "is text (" + shortened(node_.Scalar(), kShownMax) + ")"
+                            : node_.IsScalar() ? " = " + shortened(node_.Scalar(), kShownMax)
+                                               : " is " + std::string(kind_of(node_));
   throw InputError(place() + value + ", must be " + must_be);
 }
 
@@ -95,6 +97,8 @@ const std::string& Value::scalar(const std::string& must_be) const {
   if (!node_.IsScalar()) refuse_value(must_be);
   return node_.Scalar();
 }
+
+bool Value::is_zero() const { return node_.IsScalar() && parsed<double>(node_.Scalar()) == 0.0; }
 
 double Value::number(const Bounds& bounds) const {
   const std::string must_be = "a number in " + to_string(bounds);

@@ -47,6 +47,8 @@ class Value {
 
   /// A finite number; quoted text, NaN and infinities are refused.
   [[nodiscard]] double number(const Bounds& bounds) const;
+  /// A zero is written here.
+  [[nodiscard]] bool is_zero() const;
   [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
   /// 1 to 63 bytes of printable ASCII, which is what a plan file can hold.
   [[nodiscard]] std::string name() const;
@@ -67,6 +69,10 @@ class Value {
   /// The value of a key before the mapping as a whole is checked, where other keys depend on it.
   [[nodiscard]] std::optional<Value> peek(std::string_view key) const;
   [[nodiscard]] bool is_mapping() const { return node_.IsMap(); }
+  /// Of a list; 0 of all else.
+  [[nodiscard]] std::size_t entries_written() const {
+    return node_.IsSequence() ? node_.size() : 0;
+  }
   /// The keys of a mapping whose keys are names, each once, in the file's order.
   [[nodiscard]] std::vector<std::string> keys() const;
 

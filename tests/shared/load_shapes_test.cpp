@@ -71,7 +71,8 @@ TEST_F(LoadShapes, TheHashCoversWhatTheFileHolds) {
 TEST_F(LoadShapes, BadFilesAreRefusedByName) {
   const std::string here = folder.path().string();
   EXPECT_EQ(refused("mesh: {file: none.stl, scale: 1}"),
-            here + "/none.stl: cannot be read: No such file or directory");
+            here + "/task.yaml:9: held[0].mesh: " + here +
+                "/none.stl: cannot be read: No such file or directory");
   folder.put("part.step", "ISO-10303-21;");
   EXPECT_EQ(refused("mesh: {file: part.step, scale: 1}"),
             here + "/part.step: must be an STL or OBJ file: its name must end in .stl or .obj");

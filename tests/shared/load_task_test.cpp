@@ -82,7 +82,8 @@ TEST(TaskErrors, UniformOnesReachToTheirBounds) {
       ":9: starts[0].sigma_m: normal errors (sigma_m, sigma_rad) and uniform ones (uniform_m, "
       "uniform_rad) do not mix in a task");
   EXPECT_EQ(refused(folder, "sigma_m: [0.01, 0.01]}", "uniform_m: [0.01, 0]}", ""),
-            ":9: starts[0].uniform_m[1] = 0, must be in (0, 1]");
+            ":9: starts[0].uniform_m[1] = 0, must be in (0, 1]; where z is known, leave it out of "
+            "coordinates");
   EXPECT_EQ(
       refused(folder, "sigma_m: [0.01, 0.01]}\n", "uniform_m: [0.01, 0.01]}\nparticle_sigmas: 3\n",
               ""),
@@ -184,7 +185,7 @@ TEST(TaskVariant, RefusesEachBadLineWithItsPlace) {
        "search, physics, variants; did you mean search?"},
       {"{w1: 3}", "{w1: 3, w1: 4}", "#fine", ":20: variants.fine.search.w1: is given twice"},
       {"sigma_m: [0.001, 0.002]", "sigma_m: [0.001]", "#fine",
-       ":19: variants.fine.starts[0].sigma_m: has 1 entries, must have 2"},
+       ":19: variants.fine.starts[0].sigma_m: has 1 entries, must have 2, for x z"},
       {"      left: {", "      middle: {", "#tight",
        ":23: variants.tight.environment.middle: is not a name in the list environment"},
       {"      left: {", "      right: {", "#tight",

@@ -123,13 +123,16 @@ TEST(LoadTask, RefusesEachBadCoordinateAndSpreadWithItsPlace) {
   const std::vector<BadLine> lines = {
       {"sigma_m: [0.03]", "sigma_m: [-0.03]",
        ":8: starts[0].sigma_m[0] = -0.03, must be in (0, 1]"},
+      {"sigma_m: [0.03]", "sigma_m: [0]",
+       ":8: starts[0].sigma_m[0] = 0, must be in (0, 1]; where x is known, leave it out of "
+       "coordinates"},
       {"sigma_m: [0.03]", "sigma_m: [.nan]",
        ":8: starts[0].sigma_m[0] = .nan, must be a number in (0, 1]"},
       {"sigma_m: [0.03]", "sigma_m: [nan]", ":8: starts[0].sigma_m[0] = nan, must be in (0, 1]"},
       {"sigma_m: [0.03]", "sigma_m: [1e999]",
        ":8: starts[0].sigma_m[0] = 1e999, must be a number in (0, 1]"},
       {"sigma_m: [0.03]", "sigma_m: [0.03, 0.03]",
-       ":8: starts[0].sigma_m: has 2 entries, must have 1"},
+       ":8: starts[0].sigma_m: has 2 entries, must have 1, for x"},
       {"sigma_m: [0.03]", "sigma_m: 0.03", ":8: starts[0].sigma_m = 0.03, must be a list of 1"},
       {", sigma_rad: [0.02]", "", ":8: starts[0]: the required key sigma_rad is missing"},
       {"coordinates: [x, rz]", "coordinates: [x]",
@@ -157,6 +160,8 @@ TEST(LoadTask, RefusesEachBadNameAndShapeWithItsPlace) {
        ":6: environment[0]: needs one of box_m: [x, y, z], cylinder: {diameter_m: d, length_m: l}, "
        "ring: {inner_diameter_m: i, outer_diameter_m: o, length_m: l}, "
        "extrusion: {profile_m: [[x, y], ...], length_m: l}, mesh: {file: f, scale: s}"},
+      {"box_m: [1, 2, 3]", "box_m: [60, 60, 160]",
+       ":6: environment[0].box_m[2] = 160, must be in (0, 100]; is it in mm? then write 0.16 m"},
       {"length_m: 0.1", "length: 0.1",
        ":4: held[0].cylinder.length: is an unknown key, known here: diameter_m, length_m; did "
        "you mean length_m?"},
