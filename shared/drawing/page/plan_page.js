@@ -122,7 +122,7 @@ class PlanPage {
     const key = ended ? "end" : move;
     if (this.told !== key) {
       this.told = key;
-      this.heading.textContent = ended ? `All ${count} steps are done` : `Step ${move} of 0 to ${count - 1}`;
+      this.heading.textContent = ended ? `All ${count} steps are done` : `Step ${move}, the last is ${count - 1}`;
       this.words.replaceChildren(...this.sentences(move, ended));
       for (const row of document.querySelectorAll("tr[data-step]")) {
         row.classList.toggle("current", Number(row.dataset.step) === move + 1 && !ended);
@@ -144,7 +144,7 @@ class PlanPage {
     }
     const step = this.data.steps[move];
     const lines = [element("p", { class: "move" }, step.words)];
-    if (step.outcomes) lines.push(termLine("Ends by", step.outcomes));
+    if (step.outcomes) lines.push(termLine("Particles end by", step.outcomes));
     if (step.touched && step.touched.length) lines.push(termLine("Touches then", step.touched.join(", ")));
     for (const gain of step.gains || []) {
       const verb = gain.settled ? " becomes certain: " : " becomes more certain: ";
