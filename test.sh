@@ -55,9 +55,9 @@ build() {
   cmake --build --preset "$1" --parallel "$jobs" -- "${quiet[@]}"
 }
 
-# Some checks are long and see few files: `guest` and the tests in real time, which mostly wait, and those of
-# faults, which need no planner. In this clone, and never in `full`, they are left out where all that they run
-# and read is what they last passed on, byte for byte.
+# Most checks see few files: the tests of an area, its program and what that runs (build/PRESET/areas). In this
+# clone, and never in `full`, they are left out where all that they run and read is what they last passed on, byte
+# for byte.
 
 # One hash of the built files named, and of every file of the tree that is not compiled; empty without git.
 bytes_of() {
@@ -123,25 +123,25 @@ stage_lint() {
   return "$failed"
 }
 
-# run_tests PRESET [OPTION...]; the release's tests carry the label "full".
+# run_tests PRESET; the release's tests carry the label "full".
 run_tests() {
-  local preset=$1 which=(--label-exclude '^full$')
-  shift
+  local preset=$1 which=(--label-exclude '^full$' --no-tests=ignore) without=nothing list area files
   [[ $tier == full ]] && which=()
-  ctest --preset "$preset" --parallel "$jobs" "${which[@]}" "$@"
+  local -A bytes
+  for list in "build/$preset/areas"/*; do
+    area=${list##*/}
+    mapfile -t files <"$list"
+    bytes[$area]=$(bytes_of "${files[@]}")
+    if passed_before "$preset.$area" "${bytes[$area]}"; then without+="|$area"; fi
+  done
+  ctest --preset "$preset" --parallel "$jobs" "${which[@]}" --exclude-regex "^($without)\."
+  for area in "${!bytes[@]}"; do passed_now "$preset.$area" "${bytes[$area]}"; done
 }
 
 stage_unit() {
   build dev
   [[ $tier == commit ]] || cmake --build --preset dev --target test_plans_full
-  local realtime faults without=nothing
-  realtime=$(bytes_of build/dev/bin/{tests_realtime,tenon-exec,tenon-sim} build/dev/plans/*)
-  faults=$(bytes_of build/dev/bin/tests_faults build/dev/plans/*)
-  if passed_before realtime "$realtime"; then without+="|realtime"; fi
-  if passed_before faults "$faults"; then without+="|faults"; fi
-  run_tests dev --exclude-regex "^($without)\."
-  passed_now realtime "$realtime"
-  passed_now faults "$faults"
+  run_tests dev
 }
 
 stage_guest() {

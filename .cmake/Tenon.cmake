@@ -4,6 +4,7 @@
 #   tenon_main(NAME SOURCE [DEP...])
 #   tenon_lcm_types(NAME)
 #   tenon_test(AREA [SERIAL|UNLISTED] [PLANS] [EXECUTABLES MAIN...] [FULL FILTER...])
+#   tenon_area_runs(AREA [PROGRAMS TARGET...] [FILES FILE...])
 #   tenon_test_program(NAME [DEP...])     for benchmarks and fuzzers
 #   tenon_plan(NAME TASK [START NAME] [CELL FILE] [FULL])
 #   tenon_check_house()
@@ -285,6 +286,7 @@ function(tenon_test area)
   if(arg_UNLISTED)
     return()
   endif()
+  tenon_area_runs(${area} PROGRAMS tests_${area} ${arg_EXECUTABLES} FILES ${plans})
   set(common TEST_PREFIX "${area}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
   if(arg_FULL)
     list(JOIN arg_FULL ":" full)
@@ -296,6 +298,18 @@ function(tenon_test area)
   gtest_discover_tests(tests_${area} ${common} ${rest}
     PROPERTIES LABELS ${area} TIMEOUT 600 RUN_SERIAL ${arg_SERIAL}
       ENVIRONMENT TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/threads/tsan.supp)
+endfunction()
+
+# All built files that the tests of an area run or read, for test.sh, which leaves out an area that has passed
+# on the same ones.
+function(tenon_area_runs area)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PROGRAMS;FILES")
+  set(files ${arg_FILES})
+  foreach(program IN LISTS arg_PROGRAMS)
+    list(APPEND files $<TARGET_FILE:${program}>)
+  endforeach()
+  list(JOIN files "\n" lines)
+  file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/areas/${area} CONTENT "${lines}\n")
 endfunction()
 
 # Whether this build is to have the tests of an area.
