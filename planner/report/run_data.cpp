@@ -97,12 +97,12 @@ Json joints_json(const RecordedRun& run, const Moments& moments) {
   return joints;
 }
 
-/// Cycles that were skipped within each moment.
+/// Cycles that were skipped within each moment. A damaged log may count anything.
 Json late_json(const RecordedRun& run, const Moments& moments) {
   Json late = Json::array();
-  std::int32_t before = 0;
+  std::int64_t before = 0;
   for (const std::size_t sample : moments.samples()) {
-    const std::int32_t now = run.samples[sample].late_cycles;
+    const std::int64_t now = run.samples[sample].late_cycles;
     late.push_back(now - before);
     before = now;
   }

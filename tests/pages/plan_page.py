@@ -14,6 +14,7 @@ import tempfile
 from browser import Browser, run_test
 
 BYTES_MAX = 3_000_000
+SMALL = 700  # px; what plays is drawn many times, by software where no graphics card is
 ROOT = "document.documentElement.dataset"
 # (plan, task, cell that it was made for)
 PLANS = [
@@ -72,7 +73,7 @@ def press(browser, key):
 def play(browser, file, failures):
     """By itself from the start to the end, where the page says what the data says; then by keys."""
     name = file.stem
-    browser.open(file, calm=False)
+    browser.open(file, width=SMALL, calm=False)
     browser.wait_for(f"{ROOT}.ready === 'true'")
     browser.evaluate("(() => { const s = document.querySelector('.controls select'); s.value = '4';"
                      " s.dispatchEvent(new Event('change')); })()")
@@ -136,6 +137,8 @@ def main(failures):
                 for file in files:
                     look_at(browser, file, "#step=1.5", webgl, failures, arguments.pictures)
                 play(browser, files[0], failures)
+                if webgl:
+                    continue  # words and numbers are the same
                 drawn = [tell_the_search(browser, file, json.loads((pathlib.Path(arguments.plans) / f"{file.stem}.json")
                                                                    .read_text()), failures) for file in files[:-1]]
                 failures.check(any(drawn), "no page draws cost against bound")
