@@ -9,7 +9,8 @@
 #                              reader of its makers (both need npm's registry)
 #   ./test.sh [full] STAGE...  only these stages, of: format lint unit guest asan tsan
 #                              and on demand: fuzz (full: a million runs of every binary decoder, 200,000 of
-#                              every text loader; hours)
+#                              every text loader; hours), and planted, which plants faults in a copy and shows that
+#                              the tests see each
 #
 # A run of all stages that passed leaves the hash of the tree that it passed on in build/tested: who asks
 # whether a commit was tested compares it with `git rev-parse COMMIT^{tree}`.
@@ -175,6 +176,12 @@ stage_fuzz() {
   ctest --preset fuzz --parallel "$jobs" --verbose | grep -E 'Done [0-9]+ runs|Passed|\*\*\*|tests passed|ERROR'
 }
 
+# Its sanitized builds, too, execute the plans that the dev build has made.
+stage_planted() {
+  build dev
+  /usr/bin/python3 -B tests/planted/plant.py --jobs "$jobs"
+}
+
 # --- run ---------------------------------------------------------------------------------------------
 
 if [[ ${1:-} == full ]]; then
@@ -185,7 +192,7 @@ stages=("$@")
 ((${#stages[@]})) || stages=("${all_stages[@]}")
 for stage in "${stages[@]}"; do
   if ! declare -F "stage_$stage" >/dev/null; then
-    echo "test.sh: no stage '$stage'; there are: ${all_stages[*]} fuzz" >&2
+    echo "test.sh: no stage '$stage'; there are: ${all_stages[*]} fuzz planted" >&2
     exit 2
   fi
 done
