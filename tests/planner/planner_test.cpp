@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "planner/collision.h"
+#include "planner/judge/plan_draft.h"
 #include "shared/base/error.h"
 #include "shared/plan/codec.h"
 #include "tests/planner/room_plan.h"
@@ -137,6 +139,33 @@ TEST(Planner, CertificationRejectsAPlanWithAChangedDisplacement) {
   const Certification beside = certify(encode_plan(changed), task, pool);
   ASSERT_FALSE(beside.holds());
   EXPECT_NE(beside.refuting()->disagreement.why.find("beside the goal"), std::string::npos);
+}
+
+TEST(Planner, CertificationRefutesAPlanThatOneParticleAloneLeaves) {
+  Task task = room_task();
+  Start& start = task.starts.front();
+  start.sigma[1] = 0.0;
+  task.goal.position_m = {0.5, start.pose.position_m.y(), 0.0};
+  Plan plan = draft_plan(task, start, {}, std::vector<Vector6>{Vector6::Unit(0)});
+  plan.check_envelopes = true;
+  RolloutPool pool(WallRollout(room()), 1);
+  const auto certified = [&](double travelled_min_m, double travelled_max_m) {
+    Envelope& envelope =
+        plan.steps[0].outcomes[static_cast<std::size_t>(Outcome::kContact)].envelope;
+    envelope.travelled_min[0] = travelled_min_m;
+    envelope.travelled_max[0] = travelled_max_m;
+    envelope.possible = kAllContacts;
+    return certify(encode_plan(plan), task, pool);
+  };
+  EXPECT_TRUE(certified(0.0, 1.0).holds());
+  // Both end at the goal, whatever the envelope says: the first of them by the shorter way.
+  const double nominal_m = 0.5 - start.pose.position_m.x();
+  const Certification first = certified(nominal_m, 1.0);
+  ASSERT_FALSE(first.holds());
+  EXPECT_EQ(first.refuting()->disagreement.particle, 0U);
+  const Certification second = certified(0.0, nominal_m);
+  ASSERT_FALSE(second.holds());
+  EXPECT_EQ(second.refuting()->disagreement.particle, 1U);
 }
 
 TEST(Planner, CertificationRefusesAPlanOfAnotherTask) {
