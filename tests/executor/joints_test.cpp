@@ -99,25 +99,27 @@ TEST_F(JointCommandTest, ATooFastCommandIsNotTakenButNamed) {
   EXPECT_EQ(command.position(), kBent);
 }
 
-TEST_F(JointCommandTest, AJointIsStoppedInsideItsLimitHoweverItCame) {
-  JointVector joints = kBent;
-  joints[2] = 2.4;  // its limit is 2.714
-  command.rest_at(joints);
-  std::optional<Ending> ending;
-  for (int cycle = 0; cycle < 1000 && !ending; ++cycle) {
-    joints[2] += 1.2 * 2e-3 * std::min(1.0, 0.01 * cycle);
-    ending = command.follow(joints);
+TEST_F(JointCommandTest, AJointIsStoppedInsideItsLimitsHoweverItCame) {
+  for (const double sign : {+1.0, -1.0}) {
+    JointVector joints = kBent;
+    joints[2] = sign * 2.4;  // its limits are 2.714 either way
+    command.rest_at(joints);
+    std::optional<Ending> ending;
+    for (int cycle = 0; cycle < 1000 && !ending; ++cycle) {
+      joints[2] += sign * 1.2 * 2e-3 * std::min(1.0, 0.01 * cycle);
+      ending = command.follow(joints);
+    }
+    ASSERT_TRUE(ending) << sign;
+    EXPECT_EQ(ending->reason, EndReason::kJointLimit);
+    EXPECT_EQ(ending->index, 2);
+    EXPECT_EQ(ending->bound, sign * 2.714);
+    EXPECT_GT(sign * ending->value, 2.714);
+    command.stop();
+    EXPECT_FALSE(command.at_rest());
+    while (!command.at_rest()) command.ramp();
+    EXPECT_LT(sign * command.position()[2], 2.714);
+    EXPECT_GT(sign * command.position()[2], 2.714 - 0.01);
   }
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->reason, EndReason::kJointLimit);
-  EXPECT_EQ(ending->index, 2);
-  EXPECT_EQ(ending->bound, 2.714);
-  EXPECT_GT(ending->value, 2.714);
-  command.stop();
-  EXPECT_FALSE(command.at_rest());
-  while (!command.at_rest()) command.ramp();
-  EXPECT_LT(command.position()[2], 2.714);
-  EXPECT_GT(command.position()[2], 2.714 - 0.01);
 }
 
 TEST_F(JointCommandTest, APoseOutOfReachIsNotTaken) {
