@@ -4,6 +4,7 @@
 
 #include "planner/search/attractors.h"
 #include "planner/search/belief_graph.h"
+#include "planner/search/heuristics.h"
 #include "planner/search/mha_search.h"
 #include "shared/config/load.h"
 #include "sim/physics/rollout/ode_rollout.h"
@@ -61,6 +62,18 @@ std::size_t watched_search(const Task& task, const Rollout& physics, std::size_t
 
 TEST(ConsistentAnchor, InARoom) {
   EXPECT_GT(watched_search(room_task(), WallRollout(room()), 500), 40U);
+}
+
+TEST(ConsistentAnchor, IsTheStraightWayThatIsLeft) {
+  const Task task = room_task();
+  const auto at = [&](double away_m) {
+    Particle particle;
+    particle.pose = displaced(task.goal, away_m * Vector6::Unit(1));
+    return anchor_heuristic(summarise({{particle}}, task), task);
+  };
+  EXPECT_EQ(at(0.0), 0.0);
+  EXPECT_NEAR(at(0.1 + task.goal_tolerance_m), 0.1 * task.distance_weight_per_m, 1e-9);
+  EXPECT_LT(at(0.1), at(0.2));
 }
 
 TEST(ConsistentAnchor, WithLooseTolerances) {
