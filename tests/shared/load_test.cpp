@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/shared/slide_robot.h"
-#include "tests/support/places.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
