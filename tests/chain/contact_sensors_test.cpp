@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -121,9 +122,11 @@ TEST_P(BoxBySensor, EndsAtTheGoalInTwoHundredDrawnWorlds) {
   ASSERT_EQ(planned.status, 0) << planned.err;
   const std::string json = folder.path() / "evaluated.json";
   const Ended evaluated =
-      run(folder, {executable("tenon-evaluate"), "--cell", cell_file(GetParam()), "--task", task,
-                   "--plan", plan, "-n", std::to_string(kRuns), "--seed", "90210", "--experiment",
-                   in_tree("sim/experiments/box_on_table.yaml"), "--json", json});
+      run(folder,
+          {executable("tenon-evaluate"), "--cell", cell_file(GetParam()), "--task", task, "--plan",
+           plan, "-n", std::to_string(kRuns), "--seed", "90210", "--experiment",
+           in_tree("sim/experiments/box_on_table.yaml"), "--json", json},
+          std::chrono::hours(1));
   ASSERT_EQ(evaluated.status, 0) << evaluated.err;
   std::printf("%s", evaluated.out.c_str());
   const auto result = nlohmann::json::parse(folder.get("evaluated.json"));

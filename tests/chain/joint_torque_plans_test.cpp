@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -90,10 +91,11 @@ class BoxByTorque : public ::testing::TestWithParam<int> {
   nlohmann::json evaluate() {
     const std::string json = folder.path() / "evaluated.json";
     std::filesystem::remove(folder.path() / "evaluated.jsonl");
-    const Ended ended =
-        run(folder, {executable("tenon-evaluate"), "--cell", cell, "--task", task, "--plan",
-                     folder.path() / "box.tnp", "-n", std::to_string(runs), "--seed", "1",
-                     "--experiment", experiment, "--json", json});
+    const Ended ended = run(folder,
+                            {executable("tenon-evaluate"), "--cell", cell, "--task", task, "--plan",
+                             folder.path() / "box.tnp", "-n", std::to_string(runs), "--seed", "1",
+                             "--experiment", experiment, "--json", json},
+                            std::chrono::hours(1));
     EXPECT_EQ(ended.status, 0) << ended.err;
     return nlohmann::json::parse(folder.get("evaluated.json"));
   }

@@ -8,9 +8,10 @@
 
 namespace tenon::tests {
 
-Ended run(const ScratchFolder& folder, const std::vector<std::string>& command) {
+Ended run(const ScratchFolder& folder, const std::vector<std::string>& command,
+          std::chrono::seconds most) {
   ChildProcess child(folder.path(), command);
-  const int status = child.wait(std::chrono::seconds(120));
+  const int status = child.wait(most);
   return {status, child.out(), child.err()};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The executables as a user runs them.
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@ struct Ended {
   std::string err;
 };
 
-/// Runs a command to its end.
-[[nodiscard]] Ended run(const ScratchFolder& folder, const std::vector<std::string>& command);
+/// Runs a command to its end, or for so long at most.
+[[nodiscard]] Ended run(const ScratchFolder& folder, const std::vector<std::string>& command,
+                        std::chrono::seconds most = std::chrono::minutes(2));
 
 /// The shared plan for a start of the box task on the gantry, as start_NAME.tnp in `folder`.
 /// @return that file
