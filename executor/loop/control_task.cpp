@@ -88,10 +88,12 @@ ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& 
 }
 
 void ControlTask::report_overruns(std::uint64_t late_cycles) noexcept {
+  if (state_ >= State::kDisabling) return;  // nothing is commanded any more
   take(Ending{.reason = EndReason::kOverruns, .value = static_cast<double>(late_cycles)});
 }
 
 void ControlTask::report_poor_feedback(std::uint64_t incomplete_cycles) noexcept {
+  if (state_ >= State::kDisabling) return;
   take(Ending{.reason = EndReason::kFeedbackPoor, .value = static_cast<double>(incomplete_cycles)});
 }
 
@@ -142,9 +144,11 @@ Event ControlTask::remember(const Ending& ending) {
   const bool fault = end_manner(ending.reason) == EndManner::kQuickStop;
   const bool first = ending_.reason == EndReason::kNone;
   const bool slipped = ending.reason == EndReason::kBrakeFailed;
-  const bool worse = slipped ? went_well(ending_.reason)
-                             : fault && end_manner(ending_.reason) != EndManner::kQuickStop &&
-                                   state_ < State::kDisabling;
+  // Once the power goes, a fault is no news to who had the run stopped, and no success to others.
+  const bool asked = ending_.reason == EndReason::kStopRequested;
+  bool worse = fault && end_manner(ending_.reason) != EndManner::kQuickStop;
+  if (state_ >= State::kDisabling) worse = fault && went_well(ending_.reason) && !asked;
+  if (slipped) worse = went_well(ending_.reason);
   const bool revealed = ending.reason == EndReason::kZeroMoved;
   if (first || worse || revealed) {
     const Ending before = ending_;

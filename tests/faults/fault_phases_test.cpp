@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "sim/cell/faults/fault_spec.h"
 #include "tests/support/faulty_options.h"
@@ -81,6 +82,25 @@ TEST(FaultPhases, AFaultStrikesInTheStepOfThePlanThatItWaitsFor) {
       const auto result = run.run();
       EXPECT_EQ(result.ending.reason, EndReason::kArmFault) << name << " " << spec;
       EXPECT_EQ(result.steps, static_cast<std::size_t>(step)) << name << ": " << result.reason;
+    }
+  }
+}
+
+// The plan is done, its drives are told to go off, and some power is left.
+TEST(FaultPhases, WhatStrikesADonePlanWhileItsPowerGoesIsNamed) {
+  for (const char* name : {"gantry3", "csp6"}) {
+    const Cell cell = shipped_cell(name);
+    const auto [task, plan] = planned_box(cell, "1");
+    const std::string jump = name == std::string("csp6") ? "jump_rad=0.3" : "jump_m=0.3";
+    const std::pair<std::string, EndReason> faults[] = {
+        {"encoder-jump:node=2,at=stopping," + jump, EndReason::kEncoderJump},
+        {"emergency:node=3,at=stopping,code=0x3210", EndReason::kArmFault},
+        {"forged-force:at=stopping,force_N=80,duration_s=0.01", EndReason::kForceFault}};
+    for (const auto& [spec, reason] : faults) {
+      WholeRun run(cell, task, plan, with_faults({spec}));
+      const auto result = run.run();
+      EXPECT_EQ(result.ending.reason, reason) << name << " " << spec << ": " << result.reason;
+      for (const auto& drive : result.truth.drives) EXPECT_TRUE(drive.brake_engaged) << spec;
     }
   }
 }
