@@ -20,7 +20,7 @@ void stop_on_signals(std::atomic<bool>& stop) {
   asked.store(&stop, std::memory_order_relaxed);
   struct sigaction action {};
   action.sa_handler = &ask_to_stop;  // no SA_RESTART: a connection that is not made ends too
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
     struct sigaction before {};
     (void)::sigaction(signal, &action, &before);
     if (signal == SIGHUP && before.sa_handler == SIG_IGN)
