@@ -144,7 +144,8 @@ Event ControlTask::remember(const Ending& ending) {
   const bool fault = end_manner(ending.reason) == EndManner::kQuickStop;
   const bool first = ending_.reason == EndReason::kNone;
   const bool slipped = ending.reason == EndReason::kBrakeFailed;
-  // Once the power goes, a fault is no news to who had the run stopped, and no success to others.
+  // Once the power goes, a fault takes the name of a run that went well, and leaves it to one that
+  // somebody had stopped.
   const bool asked = ending_.reason == EndReason::kStopRequested;
   bool worse = fault && end_manner(ending_.reason) != EndManner::kQuickStop;
   if (state_ >= State::kDisabling) worse = fault && went_well(ending_.reason) && !asked;

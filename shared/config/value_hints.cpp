@@ -25,13 +25,15 @@ struct Unit {
   std::string_view name;   ///< what the key says
   std::string_view other;  ///< what people write
   double per_unit;         ///< of the other
+  double beyond = 2.0;     ///< as many times the bound and more is no longer too much of the unit
 };
 
-// The longer ends first: what ends in _mps does not end in _s.
+// The longer ends first: what ends in _mps does not end in _s. Bounds of lengths are metres that no
+// hand or arm reaches, so that whatever is beyond them is in millimetres.
 constexpr std::array<Unit, 9> kUnits = {{{"_m2", "m^2", "mm^2", 1e6},
                                          {"_mps", "m/s", "mm/s", 1e3},
                                          {"_mps2", "m/s^2", "mm/s^2", 1e3},
-                                         {"_m", "m", "mm", 1e3},
+                                         {"_m", "m", "mm", 1e3, 1.0},
                                          {"_s", "s", "ms", 1e3},
                                          {"_kg", "kg", "g", 1e3},
                                          {"_Nm", "Nm", "Nmm", 1e3},
@@ -68,9 +70,9 @@ std::string unit_hint(std::string_view path, double number, const Bounds& bounds
   const Unit* unit = unit_of(path);
   if (unit == nullptr || !std::isfinite(number)) return {};
   const double meant = number / unit->per_unit;
-  // What is within the bounds is taken as written, and nobody writes a fraction of a small unit.
+  // Nobody writes a fraction of a small unit.
   const double bound = std::max(std::abs(bounds.low), std::abs(bounds.high));
-  const bool other_unit = std::abs(number) >= std::max(1.5 * bound, 1.0);
+  const bool other_unit = std::abs(number) >= std::max(unit->beyond * bound, 1.0);
   if (!other_unit || !bounds.holds(meant)) return {};
   return "; is it in " + std::string(unit->other) + "? then write " + format("%.4g", meant) + " " +
          std::string(unit->name);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "executor/dry_run/plan_check.h"
@@ -41,32 +42,28 @@ SensorFault silence(const char* fault, const char* after) {
 const char* const kAfter10 = "no new wrench in 11 cycles in a row, at most 10";
 const char* const kAfter15 = "no new wrench in 16 cycles in a row, at most 15";
 
+/// @param after a line for people where samples stay away  @param range likewise, at its end
+std::vector<SensorFault> faults_of(const char* after, const char* range, SensorFault overrange) {
+  return {silence("stale-force", after),
+          silence("torn-force", after),
+          {"frozen-force", "wrench_frozen", ""},
+          {"saturated-force", "sensor_saturated", range},
+          std::move(overrange)};
+}
+
 // Asked by every third SYNC.
-const SensorCase kSlow{
-    "slow_sensor_gantry3",
-    3,
-    {silence("stale-force", kAfter15),
-     silence("torn-force", kAfter15),
-     {"frozen-force", "wrench_frozen", ""},
-     {"saturated-force", "sensor_saturated", "sensor axis x reads 300 N, its range ends at 300"},
-     {"overrange-force", "arm_fault: sensor_invalid", "0xFF01"}}};
+const SensorCase kSlow{"slow_sensor_gantry3", 3,
+                       faults_of(kAfter15, "sensor axis x reads 300 N, its range ends at 300",
+                                 {"overrange-force", "arm_fault: sensor_invalid", "0xFF01"})};
 // Robotous RFT: streams at 200 Hz by a clock of its own.
 const SensorCase kRft{
-    "rft_gantry3",
-    3,
-    {silence("stale-force", kAfter15),
-     silence("torn-force", kAfter15),
-     {"frozen-force", "wrench_frozen", ""},
-     {"saturated-force", "sensor_saturated", "sensor axis x reads 200 N, its range ends at 200"},
-     {"overrange-force", "arm_fault: sensor_invalid", "reports overload 0x04 (fz)"}}};
+    "rft_gantry3", 3,
+    faults_of(kAfter15, "sensor axis x reads 200 N, its range ends at 200",
+              {"overrange-force", "arm_fault: sensor_invalid", "reports overload 0x04 (fz)"})};
 // ATI NETCANOEM: polled at 250 Hz.
-const SensorCase kNetcanoem{"ati_gantry3",
-                            2,
-                            {silence("stale-force", kAfter10),
-                             silence("torn-force", kAfter10),
-                             {"frozen-force", "wrench_frozen", ""},
-                             {"saturated-force", "sensor_saturated", "its range ends at 290"},
-                             {"overrange-force", "sensor_saturated", "sensor axis rx"}}};
+const SensorCase kNetcanoem{"ati_gantry3", 2,
+                            faults_of(kAfter10, "its range ends at 290",
+                                      {"overrange-force", "sensor_saturated", "sensor axis rx"})};
 
 class ContactSensors : public testing::TestWithParam<SensorCase> {
  protected:
