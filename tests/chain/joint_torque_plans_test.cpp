@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -97,6 +98,7 @@ class BoxByTorque : public ::testing::TestWithParam<int> {
                              "--experiment", experiment, "--json", json},
                             std::chrono::hours(1));
     EXPECT_EQ(ended.status, 0) << ended.err;
+    std::printf("%s", ended.out.c_str());
     return nlohmann::json::parse(folder.get("evaluated.json"));
   }
 
