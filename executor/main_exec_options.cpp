@@ -26,7 +26,7 @@ void add_work(CLI::App& app, Options& options) {
       "--can", options.can,
       "socketcan:can0, slcan:/dev/ttyACM0 or slcan://HOST:PORT; arm=URI,sensor=URI where the "
       "force/torque sensor has a bus of its own");
-  app.add_option("--rt", options.rt, "real time: require, prefer or off")
+  app.add_option("--rt", options.rt, "ask for real time, and start without it or not")
       ->check(CLI::IsMember({"require", "prefer", "off"}))
       ->capture_default_str();
   app.add_option("--cpu", options.cpu, "processor for the control loop")
@@ -49,7 +49,8 @@ void add_work(CLI::App& app, Options& options) {
 void add_outputs(CLI::App& app, Options& options) {
   app.add_option("--lcm-url", options.lcm_url, "where telemetry goes, or none")
       ->capture_default_str();
-  app.add_option("--log", options.log, "telemetry log for lcm-logplayer");
+  app.add_option("--log", options.log,
+                 "telemetry of every cycle, for tenon-monitor, tenon-inspect and lcm-logplayer");
   app.add_option("--can-log", options.can_log, "frames in candump's format, FILE.log");
   app.add_option("--json", options.json, "result, - for standard output");
   app.add_option("--black-box", options.black_box, "the last second as CSV, after a fault")
@@ -62,10 +63,15 @@ Options parse_options(int argc, char** argv) {
   Options options;
   CLI::App app{"Executes a plan of guarded moves on an arm over CAN."};
   app.footer(
-      "Example:\n  tenon-exec --cell hw/cells/gantry3.yaml --plan plan.tnp \\\n"
-      "             --can slcan://127.0.0.1:29536 --log run.lcmlog --json result.json\n\n"
-      "Exit status: 0 the plan is done (--dry-run: can be) or something identified, 1 it failed or "
-      "was stopped, 2 bad input.");
+      "Exit status:\n"
+      "  0  the plan is done, or something was identified, and the drives are off;\n"
+      "     --dry-run: it can be done\n"
+      "  1  it failed, faulted or was stopped, or a file that was asked for is not whole\n"
+      "  2  bad input, or a plan that this cell cannot execute\n\n"
+      "Examples:\n"
+      "  tenon-exec --cell hw/cells/gantry3.yaml --plan plan.tnp --dry-run\n"
+      "  tenon-exec --cell hw/cells/gantry3.yaml --plan plan.tnp \\\n"
+      "             --can slcan://127.0.0.1:29536 --log run.lcmlog --json result.json");
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--cell", options.cell, "cell file (YAML)")->required();
   add_work(app, options);

@@ -184,13 +184,13 @@ int watch(const Options& options) {
 // The subcommand, whose options go into `options`.
 CLI::App* describe_export(CLI::App& app, ExportOptions& options) {
   CLI::App* sub = app.add_subcommand("export", "Writes a run's log as CSV and MCAP and ends");
-  sub->footer("Example: tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap");
+  sub->footer("Examples:\n  tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap");
   sub->add_option("log", options.log, "Log of tenon-exec --log, or of the key r")->required();
   sub->add_option("--csv", options.csv, "File for a table: a row a control cycle");
   sub->add_option("--mcap", options.mcap,
                   "File for PlotJuggler and Foxglove: every message, what happened, the tool's "
                   "frames");
-  sub->add_option("--run", options.run, "Which, of a log that holds several, from 1")
+  sub->add_option("--run", options.run, "Which run of a log that holds several, from 1")
       ->check(CLI::Range(1, 1'000'000))
       ->default_str("the last");
   return sub;
@@ -207,13 +207,19 @@ int main(int argc, char** argv) {
     CLI::App app{
         "Watches a run of tenon-exec over LCM: on a terminal as a dashboard, else line by line."};
     app.footer(
-        "Examples:\n  tenon-monitor\n  tenon-monitor --lcm-url 'file://run.lcmlog?speed=1'\n  "
-        "tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap");
+        "Exit status:\n"
+        "  0  all that came, or all of the log, was shown or written\n"
+        "  1  messages could not be decoded; export: the log is damaged or breaks off\n"
+        "  2  bad input\n\n"
+        "Examples:\n"
+        "  tenon-monitor\n"
+        "  tenon-monitor --lcm-url 'file://run.lcmlog?speed=1'\n"
+        "  tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap");
     app.set_version_flag("--version", TENON_VERSION);
     app.add_option("--lcm-url", options.url, "where telemetry comes from")->capture_default_str();
     app.add_option("--record-to", options.record_to, "folder of what the key r records")
         ->capture_default_str();
-    app.add_flag("--lines", options.lines, "lines on a terminal too");
+    app.add_flag("--lines", options.lines, "write lines on a terminal too");
     const CLI::App* exports = describe_export(app, export_options);
     tenon::parse(app, argc, argv);
     return exports->parsed() ? run_export(export_options) : watch(options);

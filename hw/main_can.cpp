@@ -201,19 +201,34 @@ struct Arguments {
   }
 };
 
+constexpr const char* kFooter =
+    "Exit status:\n"
+    "  0  done; check: nothing is refused\n"
+    "  1  nobody answered, a node refused, or two have one number; check: something is refused;\n"
+    "     --robot: a motor is silent, in error, or holds other values than the file\n"
+    "  2  bad input\n\n"
+    "Examples:\n"
+    "  tenon-can --can socketcan:can0 scan\n"
+    "  tenon-can --can socketcan:can0 read 3 0x6041 0\n"
+    "  tenon-can check hw/robots/lwa4p/robot.yaml --eds joint.dcf";
+
+void describe_node(CLI::App& command, Arguments& arguments) {
+  command.add_option("NODE", arguments.node, "its number on the bus")
+      ->required()
+      ->check(CLI::Range(1, 127));
+}
+
 int run(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app{
-      "Looks at the nodes of a CAN bus, reads and writes their objects.\n"
-      "Example: tenon-can --can socketcan:can0 read 3 0x6041 0\n"
-      "         tenon-can check hw/robots/lwa4p/robot.yaml --eds joint.dcf"};
+  CLI::App app{"Looks at the nodes of a CAN bus, reads and writes their objects."};
+  app.footer(kFooter);
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--can", arguments.uri,
                  "socketcan:IFACE, slcan:/dev/TTY or slcan://HOST:PORT; "
                  "needed by all but check");
   const auto* bitrate =
       app.add_option("--bitrate", arguments.bitrate_bps,
-                     "bit/s; set on slcan adapters, checked on SocketCAN; default of --robot: its")
+                     "bit/s; set on slcan adapters, checked on SocketCAN; with --robot the file's")
           ->capture_default_str();
   app.require_subcommand(1);
   auto* scan_command = app.add_subcommand("scan", "ask all 127 nodes who they are");
@@ -224,7 +239,7 @@ int run(int argc, char** argv) {
   }
   auto* store_command =
       app.add_subcommand("store", "let a node keep its settings without power (1010h)");
-  store_command->add_option("NODE", arguments.node)->required()->check(CLI::Range(1, 127));
+  describe_node(*store_command, arguments);
   auto* check_command =
       app.add_subcommand("check", "without a bus: what bring-up would do to a robot's drives");
   check_command->add_option("ROBOT", arguments.robot, "robot.yaml")->required();
@@ -235,12 +250,13 @@ int run(int argc, char** argv) {
   auto* read_command = app.add_subcommand("read", "read an object");
   auto* write_command = app.add_subcommand("write", "write an object");
   for (auto* command : {read_command, write_command}) {
-    command->add_option("NODE", arguments.node)->required()->check(CLI::Range(1, 127));
-    command->add_option("INDEX", arguments.index, "such as 0x6041")->required();
-    command->add_option("SUB", arguments.sub)->required();
+    describe_node(*command, arguments);
+    command->add_option("INDEX", arguments.index, "of the object, such as 0x6041")->required();
+    command->add_option("SUB", arguments.sub, "its sub-index")->required();
   }
-  write_command->add_option("TYPE", arguments.type, "u8 u16 u32 i8 i16 i32 str")->required();
-  write_command->add_option("VALUE", arguments.value)->required();
+  write_command->add_option("TYPE", arguments.type, "u8, u16, u32, i8, i16, i32 or str")
+      ->required();
+  write_command->add_option("VALUE", arguments.value, "what to write")->required();
   parse(app, argc, argv);
 
   if (check_command->parsed()) return check_robot_file(arguments.robot, arguments.eds);

@@ -53,19 +53,23 @@ struct Arguments {
 void describe(CLI::App& app, Arguments& a) {
   app.set_version_flag("--version", TENON_VERSION);
   app.footer(
-      "Example: tenon-inspect plan.tnp --recertify planner/tasks/box_on_table_2d.yaml\n"
-      "         tenon-inspect plan.tnp --task planner/tasks/box_on_table_2d.yaml --report "
-      "out.html\n"
-      "         tenon-inspect plan.tnp --task planner/tasks/box_on_table_2d.yaml --run result.json "
-      "--log run.lcmlog --report run.html");
+      "Exit status:\n"
+      "  0  shown, and what was asked for is written; --recertify: the plan is what it says\n"
+      "  1  --recertify: it is not; or a file could not be written\n"
+      "  2  bad input\n\n"
+      "Examples:\n"
+      "  tenon-inspect plan.tnp --recertify planner/tasks/box_on_table_2d.yaml\n"
+      "  tenon-inspect plan.tnp --task planner/tasks/box_on_table_2d.yaml --report plan.html\n"
+      "  tenon-inspect plan.tnp --task planner/tasks/box_on_table_2d.yaml \\\n"
+      "                --run result.json --log run.lcmlog --report run.html");
   app.add_option("plan", a.plan, "Plan file")->required();
   app.add_option("--json", a.json,
                  "File for everything that the plan holds, - for standard output");
   app.add_option("--task", a.task, "Task file that the plan was made from");
   CLI::Option* report =
       app.add_option("--report", a.report,
-                     "HTML file: the plan seen from above, and why it works; with --run or --log "
-                     "the run, laid over it");
+                     "HTML file: the plan, played step by step, and why it works; with --run or "
+                     "--log the run, laid over it");
   app.add_option("--run", a.run, "Result of a run of the plan, as tenon-exec --json wrote it")
       ->needs(report);
   app.add_option("--log", a.log, "Log of a run of the plan, as tenon-exec --log wrote it")
@@ -75,8 +79,8 @@ void describe(CLI::App& app, Arguments& a) {
                  "1 if they are not what the plan says");
   app.add_option("--cell", a.cell, "Cell file that the plan was made with");
   app.add_option("--statistics", a.statistics,
-                 "What tenon-plan wrote of this plan with --json: text and the plan's page tell of "
-                 "the search");
+                 "What tenon-plan --json wrote with this plan: text and the plan's page then tell "
+                 "of the search");
   app.add_option("--threads", a.threads, "Threads of the simulation")
       ->check(CLI::Range(1, 256))
       ->default_str("all cores");

@@ -54,14 +54,15 @@ struct Arguments {
 
 void describe_new_task(CLI::App& app, NewTaskArguments& a) {
   auto* parts = app.add_option("--new-task", a.parts,
-                               "Write a task for two parts (STL, OBJ), PLUG SOCKET, in place of a "
+                               "Write a task for two parts, files of STL or OBJ, in place of a "
                                "plan; -o names its file")
                     ->expected(2)
                     ->option_text("PLUG SOCKET");
   app.add_option("--goal", a.goal,
-                 "With --new-task: where the plug's file stands in the socket's, assembled, "
-                 "x y z [rx ry rz], m and rad (both files in one frame)")
+                 "With --new-task: where the plug's file stands in the socket's, assembled, m and "
+                 "rad; without it both are in one frame")
       ->expected(3, 6)
+      ->option_text("X Y Z [RX RY RZ]")
       ->needs(parts);
   app.add_option("--uniform-mm", a.uniform_mm,
                  "With --new-task: the socket is anywhere within so much along each axis")
@@ -77,10 +78,18 @@ void describe_new_task(CLI::App& app, NewTaskArguments& a) {
 
 void describe(CLI::App& app, Arguments& a) {
   app.set_version_flag("--version", TENON_VERSION);
-  app.footer("Example: tenon-plan planner/tasks/box_on_table_2d.yaml --start 1 -o plan.tnp");
+  app.footer(
+      "Exit status:\n"
+      "  0  a plan is written; --check: nothing is wrong; --new-task: a task is written\n"
+      "  1  there is no plan, and the last line says why; or a file could not be written\n"
+      "  2  bad input; --check: something is wrong\n\n"
+      "Examples:\n"
+      "  tenon-plan --check planner/tasks/box_on_table_2d.yaml\n"
+      "  tenon-plan planner/tasks/box_on_table_2d.yaml --start 1 -o plan.tnp");
   app.add_option("task", a.task, "Task file");
   describe_new_task(app, a.new_task);
-  app.add_option("--start", a.start, "Name of the start to plan from (the task's first)");
+  app.add_option("--start", a.start, "Name of the start to plan from")
+      ->default_str("the task's first");
   app.add_option("--cell", a.cell, "Cell file: plan with what its arm and contact stiffness allow");
   std::vector<std::string> methods;
   methods.reserve(kPlanMethods.size());
@@ -88,15 +97,17 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--method", a.method, "Planner; all but mha are baselines with one particle")
       ->check(CLI::IsMember(methods))
       ->capture_default_str();
-  app.add_option("--threads", a.threads, "Threads; the plan does not depend on it")
+  app.add_option("--threads", a.threads, "Threads that plan; the plan does not depend on them")
       ->check(CLI::Range(1, 256))
       ->default_str("all cores");
   app.add_option("--time-limit", a.time_limit_s,
-                 "Seconds after which no path is searched for any more (the task's)");
+                 "Seconds after which no path is searched for any more")
+      ->default_str("the task's");
   app.add_option("--move-limit", a.move_limit,
                  "Simulated moves after which no path is searched for any more, the same on every "
-                 "machine (none)")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}));
+                 "machine")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}))
+      ->default_str("none");
   app.add_option("--improve", a.improve_s,
                  "Seconds to look for better plans once there is one; each is printed and written")
       ->check(CLI::Range(0.0, 86400.0))
@@ -110,7 +121,7 @@ void describe(CLI::App& app, Arguments& a) {
       "with exact ones in any case");
   app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
   app.add_option("-o,--output", a.output,
-                 "Plan file to write, or task file; required but for --check");
+                 "Plan file to write, of --new-task the task file; required but for --check");
   auto* check =
       app.add_flag("--check", a.check,
                    "Plan nothing: say what of the task is understood, and what is wrong with it");

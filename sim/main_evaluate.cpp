@@ -193,12 +193,14 @@ int parse_and_evaluate(int argc, char** argv) {
       "protocol to the virtual arm, in virtual time.",
       "tenon-evaluate"};
   app.footer(
-      "Example:\n  tenon-evaluate --cell hw/cells/gantry3.yaml --task "
-      "planner/tasks/box_on_table_2d.yaml \\\n                 --plan plan.tnp -n 1000 --seed 1 "
-      "--threads 2 --json out.json --report out.html\n\n"
-      "Run again, it goes on where it was stopped. Exit status: 0 all runs were made, however they "
-      "ended; 1 fewer than --min-success succeeded, or not all of what was asked for could be "
-      "written; 2 bad input.");
+      "Run again, it goes on where it was stopped.\n\n"
+      "Exit status:\n"
+      "  0  all runs were made, however they ended\n"
+      "  1  fewer than --min-success succeeded, or not all of what was asked for could be written\n"
+      "  2  bad input\n\n"
+      "Examples:\n"
+      "  tenon-evaluate --cell hw/cells/gantry3.yaml --task planner/tasks/box_on_table_2d.yaml \\\n"
+      "                 --plan plan.tnp -n 1000 --seed 1 --json out.json --report out.html");
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--cell", line.cell, "cell file")->required();
   app.add_option("--task", line.task, "task file, or a variant of one: TASK.yaml#VARIANT")
@@ -215,10 +217,12 @@ int parse_and_evaluate(int argc, char** argv) {
   app.add_option("--seed", line.seed, "what is drawn follows from it and the run's number")
       ->check(CLI::Range(0.0, 9007199254740992.0).description("[0, 2^53]"))
       ->required();
-  app.add_option("--threads", line.threads, "results do not depend on it")
+  app.add_option("--threads", line.threads,
+                 "threads that make the runs; results do not depend on them")
       ->check(CLI::Range(1, 1024))
       ->default_str("all cores");
-  app.add_option("--by", line.by, "break success down by a drawn quantity: friction=0.1:0.8:7")
+  app.add_option("--by", line.by,
+                 "break success down by a drawn quantity, or by two: friction=0.1:0.8:7")
       ->expected(1, 2);
   app.add_option("--runs", line.runs, "run log to go on with; default: --json's name with .jsonl");
   CLI::Option* shard =

@@ -294,12 +294,16 @@ void answer_help(const std::string& fault) {
 
 int parse_and_simulate(int argc, char** argv) {
   CommandLine line;
-  CLI::App app{
-      "The virtual arm: drives, sensor and physics behind a CAN bus, on their own clock.\n"
-      "Example: tenon-sim --cell hw/cells/gantry3.yaml --task planner/tasks/box_on_table_2d.yaml\n"
-      "                   --can slcan-listen://127.0.0.1:29536 --start 7 --seed 1 --json "
-      "truth.json",
-      "tenon-sim"};
+  CLI::App app{"The virtual arm: drives, sensor and physics behind a CAN bus, on their own clock.",
+               "tenon-sim"};
+  app.footer(
+      "Exit status:\n"
+      "  0  it ran until it was ended\n"
+      "  1  physics gave up, and the run means nothing; or the truth could not be written\n"
+      "  2  bad input\n\n"
+      "Examples:\n"
+      "  tenon-sim --cell hw/cells/gantry3.yaml --task planner/tasks/box_on_table_2d.yaml \\\n"
+      "            --start 7 --seed 1 --can slcan-listen://127.0.0.1:29536 --json truth.json");
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--cell", line.cell, "cell file")->required();
   app.add_option("--task", line.task, "task file: held part, environment, starts")->required();
@@ -310,7 +314,7 @@ int parse_and_simulate(int argc, char** argv) {
       ->required();
   app.add_option("--start", line.start, "where the tool stands; default: the task's first start");
   CLI::Option* seed = app.add_option(
-      "--seed", line.seed, "draws how far the environment is off, and the sensor's noise");
+      "--seed", line.seed, "how far the environment is off is drawn by it, and the sensor's noise");
   constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53U;  // what a JSON reader keeps exactly
   seed->check(CLI::Range(std::uint64_t{0}, kSeedMax).description("[0, 2^53]"));
   app.add_option("--offset", line.offset, "how far the environment is off: x_m=0.02,y_m=-0.01")
@@ -325,8 +329,8 @@ int parse_and_simulate(int argc, char** argv) {
       ->each(answer_help);
   app.add_option(
       "--lcm-url", line.lcm_url,
-      "where the executor's telemetry comes from, which tells the plan's steps to faults "
-      "with at=step:N");
+      "where the executor's telemetry comes from: a fault with at=step:N hears from it which step "
+      "runs");
   app.add_option("--twin", line.twins,
                  "NODE=FILE: that joint's drive answers with the objects, limits and access types "
                  "of an EDS or DCF file; may be repeated")

@@ -1,7 +1,10 @@
 #include "shared/config/command_line_texts.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <set>
+#include <sstream>
 #include <vector>
 
 namespace tenon {
@@ -10,23 +13,44 @@ namespace {
 using Options = std::vector<const CLI::Option*>;
 using Apps = std::vector<const CLI::App*>;
 
+/// That have a page; each names the others.
+constexpr std::array<const char*, 7> kPrograms = {"tenon-can",     "tenon-evaluate", "tenon-exec",
+                                                  "tenon-inspect", "tenon-monitor",  "tenon-plan",
+                                                  "tenon-sim"};
+
 Apps subcommands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* sub) { return !sub->get_name().empty(); });
 }
 
-/// Text as man(7) takes it: no character is a command of it, and lines stay lines.
+/// Text as man(7) takes it: no character is a command of it or becomes another one, so that what is
+/// copied from the page can be typed; and lines stay lines.
 std::string roff(const std::string& text) {
   std::string safe;
   bool begins = true;
   for (const char c : text) {
-    if (begins && (c == '.' || c == '\'')) safe += "\\&";
+    if (begins && c == '.') safe += "\\&";
     begins = c == '\n';
-    if (c == '\\') {
-      safe += "\\e";
-    } else if (c == '-') {
-      safe += "\\-";
-    } else {
-      safe += c;
+    switch (c) {
+      case '\\':
+        safe += "\\e";
+        break;
+      case '-':
+        safe += "\\-";
+        break;
+      case '\'':
+        safe += "\\(aq";
+        break;
+      case '`':
+        safe += "\\(ga";
+        break;
+      case '^':
+        safe += "\\(ha";
+        break;
+      case '~':
+        safe += "\\(ti";
+        break;
+      default:
+        safe += c;
     }
   }
   return safe;
@@ -45,6 +69,20 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 std::string takes(const CLI::Option& option) {
   if (!option.get_option_text().empty()) return option.get_option_text();
   return option.get_items_expected_max() == 0 ? std::string() : option.get_type_name();
+}
+
+/// The same for a reader: "a|b" of "TEXT:{a,b}", "INT in [1 - 9]" of "UINT:INT in [1 - 9]".
+std::string value_of(const CLI::Option& option) {
+  const std::string type = takes(option);
+  const std::size_t colon = type.find(':');
+  if (colon == std::string::npos || colon + 1 == type.size()) return type;
+  std::string value = type.substr(colon + 1);
+  if (value.front() == '[') return type.substr(0, colon) + " in " + value;
+  if (value.front() == '{' && value.back() == '}') {
+    value = value.substr(1, value.size() - 2);
+    std::replace(value.begin(), value.end(), ',', '|');
+  }
+  return value;
 }
 
 /// The words of "TEXT:{a,b}", apart by blanks; none where there is no such list.
@@ -66,17 +104,21 @@ std::string strung(const std::vector<std::string>& words, const char* between) {
 
 std::string option_paragraph(const CLI::Option& option) {
   std::string text = ".TP\n\\fB" + roff(strung(names_of(option), ", ")) + "\\fR";
-  if (const std::string type = takes(option); !type.empty()) text += " \\fI" + roff(type) + "\\fR";
-  text += "\n" + roff(option.get_description());
-  if (!option.get_default_str().empty()) text += " (" + roff(option.get_default_str()) + ")";
-  if (option.get_required()) text += " (required)";
-  return text + "\n";
+  if (const std::string value = value_of(option); !value.empty()) {
+    text += " \\fI" + roff(value) + "\\fR";
+  }
+  std::string words = option.get_description();
+  if (!option.get_default_str().empty()) words += " (default: " + option.get_default_str() + ")";
+  if (option.get_required()) words += " (required)";
+  return text + "\n" + roff(words) + "\n";
 }
 
+/// A subcommand's --help is no news.
 std::string option_paragraphs(const CLI::App& app) {
   std::string text;
   const auto add = [&](bool positional) {
     for (const CLI::Option* option : app.get_options()) {
+      if (app.get_parent() != nullptr && option == app.get_help_ptr()) continue;
       if (option->get_positional() == positional) text += option_paragraph(*option);
     }
   };
@@ -85,15 +127,81 @@ std::string option_paragraphs(const CLI::App& app) {
   return text;
 }
 
-std::string synopsis(const CLI::App& app, const std::string& program) {
-  std::string text = ".B " + roff(program) + "\n[OPTIONS]";
+/// " task", " [task]": what stands on the command line without a name.
+std::string arguments_of(const CLI::App& app) {
+  std::string text;
   for (const CLI::Option* option : app.get_options()) {
     if (!option->get_positional()) continue;
     const std::string name = option->get_name(true);
-    text += " " + roff(option->get_required() ? name : "[" + name + "]");
+    text += " " + (option->get_required() ? name : "[" + name + "]");
   }
-  if (!subcommands_of(app).empty()) text += " SUBCOMMAND";
+  return text;
+}
+
+std::string synopsis(const CLI::App& app, const std::string& program) {
+  std::string text = ".B " + roff(program) + "\n[OPTIONS]" + roff(arguments_of(app));
+  if (!subcommands_of(app).empty()) {
+    text += app.get_require_subcommand_min() == 0 ? " [SUBCOMMAND]" : " SUBCOMMAND";
+  }
   return text + "\n";
+}
+
+/// As NAME has it, for apropos(1): no capital and no full stop.
+std::string summary(const CLI::App& app) {
+  std::string line = app.get_description();
+  if (line.empty()) return line;
+  line.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(line.front())));
+  if (line.back() == '.') line.pop_back();
+  return line;
+}
+
+/// "  1  the plan failed" as a paragraph with the number beside it; any other line goes on with it.
+std::string status_line(const std::string& line) {
+  const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
+  if (begin == line.size() || std::isdigit(static_cast<unsigned char>(line[begin])) == 0) {
+    return roff(line.substr(begin)) + "\n";
+  }
+  const std::size_t words = std::min(line.find_first_not_of(' ', begin + 1), line.size());
+  return std::string(".TP\n") + line[begin] + "\n" + roff(line.substr(words)) + "\n";
+}
+
+/// The sections of a footer, whose parts have a blank line between them: under "Exit status:" and
+/// "Examples:" their lines, two blanks in; others are notes.
+std::string sections_of(const std::string& footer) {
+  std::string status;
+  std::string examples;
+  std::string notes;
+  std::string title;
+  std::istringstream lines(footer);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line == "Exit status:" || line == "Examples:") {
+      title = line;
+    } else if (title == "Exit status:") {
+      status += status_line(line);
+    } else if (title == "Examples:") {
+      examples += roff(line.starts_with("  ") ? line.substr(2) : line) + "\n";
+    } else {
+      notes += roff(line) + "\n";
+    }
+  }
+  if (status.empty()) {
+    status =
+        ".TP\n0\nSuccess.\n.TP\n1\nThe task failed; the last line says why.\n"
+        ".TP\n2\nBad usage or bad input.\n";
+  }
+  std::string text = ".SH EXIT STATUS\n" + status;
+  if (!examples.empty()) text += ".SH EXAMPLES\n.nf\n" + examples + ".fi\n";
+  if (!notes.empty()) text += ".SH NOTES\n" + notes;
+  return text;
+}
+
+std::string see_also(const std::string& program) {
+  std::string text;
+  for (const char* other : kPrograms) {
+    if (other == program) continue;
+    text += (text.empty() ? ".BR " : ",\n.BR ") + roff(other) + " (1)";
+  }
+  return ".SH SEE ALSO\n" + text + "\n";
 }
 
 /// Of the program and of all its subcommands.
@@ -115,19 +223,19 @@ std::string manual_page(const CLI::App& app, const std::string& program,
                         const std::string& version) {
   std::string text = ".TH " + roff(program) + " 1 \"\" \"Tenon " + roff(version) +
                      "\" \"User Commands\"\n.SH NAME\n" + roff(program) + " \\- " +
-                     roff(app.get_description()) + "\n.SH SYNOPSIS\n" + synopsis(app, program) +
+                     roff(summary(app)) + "\n.SH SYNOPSIS\n" + synopsis(app, program) +
                      ".SH OPTIONS\n" + option_paragraphs(app);
   const Apps subcommands = subcommands_of(app);
   if (!subcommands.empty()) text += ".SH SUBCOMMANDS\n";
   for (const CLI::App* sub : subcommands) {
-    text += ".SS " + roff(sub->get_name()) + "\n" + roff(sub->get_description()) + "\n" +
-            option_paragraphs(*sub);
+    text += ".SS " + roff(sub->get_name() + arguments_of(*sub)) + "\n" +
+            roff(sub->get_description()) + "\n" + option_paragraphs(*sub);
   }
+  text += sections_of(app.get_footer());
   text +=
-      ".SH EXIT STATUS\n.TP\n0\nSuccess.\n.TP\n1\nThe task failed; the last line says why.\n"
-      ".TP\n2\nBad usage or bad input.\n";
-  if (!app.get_footer().empty()) text += ".SH EXAMPLES\n.nf\n" + roff(app.get_footer()) + "\n.fi\n";
-  return text;
+      ".SH FILES\n.TP\n\\fIshare/tenon\\fR\nBelow the prefix of the installation: documents, "
+      "README.md first, and the files of tasks, robots and cells that ship.\n";
+  return text + see_also(program);
 }
 
 std::string bash_completion(const CLI::App& app, const std::string& program) {

@@ -41,12 +41,27 @@ def options_of(program):
     return options
 
 
+def check_page(program, page, failures):
+    """What a reader of the page would stumble over."""
+    sections = re.findall(r"^\.SH (.*)$", page, re.M)
+    wanted = ["NAME", "SYNOPSIS", "OPTIONS", "EXIT STATUS", "EXAMPLES", "FILES", "SEE ALSO"]
+    failures.check([name for name in sections if name in wanted] == wanted, f"{program}: its page's sections are {sections}")
+    named = page.partition(".SH NAME\n")[2].partition("\n.SH")[0]
+    failures.check(re.fullmatch(r"[a-z\\-]+ \\- [a-z][^\n]*[^\n.]", named), f"{program}: apropos cannot read its NAME '{named}'")
+    others = re.findall(r"^\.BR (\S+) \(1\),?$", page.partition(".SH SEE ALSO\n")[2].replace("\\-", "-"), re.M)
+    failures.check(sorted([*others, program]) == PROGRAMS, f"{program}: its page sends its readers to {others}")
+    for line in re.sub(r"^\.nf\n.*?^\.fi\n", "", page, flags=re.M | re.S).splitlines():
+        failures.check(line == line.lstrip() != "", f"{program}: a line of its page is empty or begins with a blank: '{line}'")
+    failures.check(not re.search(r"['`^~]|(?<!\\)-", page), f"{program}: its page has a character that man would change")
+
+
 def check_texts(prefix, failures):
     named = 0
     for program in PROGRAMS:
         options = options_of(prefix / "bin" / program)
         failures.check({"--help", "--version", "--man"} <= options, f"{program}: its help names only {options}")
         page = gzip.decompress((prefix / f"share/man/man1/{program}.1.gz").read_bytes()).decode()
+        check_page(program, page, failures)
         words = set(re.findall(r"(?<![\w-])--?[a-z][a-z-]*", page.replace("\\-", "-").replace("\\fB", " ")))
         completion = prefix / "share/bash-completion/completions" / program
         offered = set(re.findall(r"--?[a-z][a-z-]*", completion.read_text()))
