@@ -1,8 +1,8 @@
 # What `cmake --install` puts where, and the Debian packages of it. Three components:
 #
-#   runtime   programs, manual pages, completion, task, robot and cell files     package tenon
-#   dev       headers, static libraries, find_package(tenon)                     package libtenon-dev
-#   python    the Python package                                                 package python3-tenon
+#   runtime   programs, manual pages, completion, documents, task, robot and cell files     package tenon
+#   dev       headers, static libraries, find_package(tenon)                                package libtenon-dev
+#   python    the Python package                                                            package python3-tenon
 #
 # Files lie below share/tenon as they lie in the repository, so that commands read the same in both.
 include(GNUInstallDirs)
@@ -17,11 +17,17 @@ install(DIRECTORY hw/cells hw/drives hw/robots DESTINATION ${data}/hw COMPONENT 
 install(DIRECTORY hw/sensors DESTINATION ${data}/hw COMPONENT runtime FILES_MATCHING PATTERN "*.yaml")
 install(DIRECTORY sim/experiments DESTINATION ${data}/sim COMPONENT runtime FILES_MATCHING PATTERN "*.yaml"
         PATTERN results EXCLUDE)
+install(DIRECTORY sim/experiments/results DESTINATION ${data}/sim/experiments COMPONENT runtime)
+install(DIRECTORY lcmtypes DESTINATION ${data} COMPONENT runtime FILES_MATCHING PATTERN "*.lcm"
+        PATTERN received EXCLUDE)
+install(DIRECTORY tests/examples DESTINATION ${data}/tests COMPONENT runtime FILES_MATCHING PATTERN "*.cpp")
 install(DIRECTORY shared/config/schemas DESTINATION ${data}/shared/config COMPONENT runtime)
 install(PROGRAMS demo.sh DESTINATION ${data} COMPONENT runtime)
-foreach(readme README.md planner/FIRST_TASK.md planner/README.md executor/README.md executor/WATCH.md hw/README.md sim/README.md shared/plan/FORMAT.md)
-  get_filename_component(folder ${readme} DIRECTORY)
-  install(FILES ${readme} DESTINATION ${data}/${folder} COMPONENT runtime)
+# What one of them links to is installed too, or is no link.
+foreach(document README.md planner/FIRST_TASK.md planner/README.md executor/README.md executor/WATCH.md hw/README.md
+                 hw/PROTOCOL.md sim/README.md lcmtypes/README.md shared/plan/FORMAT.md shared/drawing/page/README.md)
+  get_filename_component(folder ${document} DIRECTORY)
+  install(FILES ${document} DESTINATION ${data}/${folder} COMPONENT runtime)
 endforeach()
 
 install(DIRECTORY planner/pictures DESTINATION ${data}/planner COMPONENT runtime)

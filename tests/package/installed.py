@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Installs a build into an empty folder: programs that run from there, a manual page and a completion that name
-every option of each, a project that finds the libraries, plans with them and executes the plan, and the Python package.
+every option of each, documents without a dead link, a project that finds the libraries, plans with them and executes the
+plan, and the Python package.
 
   installed.py CMAKE BUILD SOURCE
 """
@@ -13,6 +14,7 @@ import tempfile
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from failures import run_test  # pylint: disable=wrong-import-position
+from markdown_links import dead_links  # pylint: disable=wrong-import-position
 
 PROGRAMS = ["tenon-can", "tenon-evaluate", "tenon-exec", "tenon-inspect", "tenon-monitor", "tenon-plan", "tenon-sim"]
 # (program, the line so far, what bash must offer for its last word)
@@ -72,6 +74,14 @@ def check_texts(prefix, failures):
     print(f"{len(PROGRAMS)} manual pages and completions name {named} options")
 
 
+def check_documents(prefix, failures):
+    documents = sorted((prefix / "share/tenon").rglob("*.md"))
+    failures.check(documents, "no documents are installed")
+    for link in dead_links(documents):
+        failures.check(False, f"a dead link: {link}")
+    print(f"{len(documents)} documents are installed")
+
+
 def check_completion(prefix, failures):
     for program, line, expected in COMPLETIONS:
         words = " ".join(f"'{word}'" for word in [program, *line])
@@ -113,6 +123,7 @@ def main(failures):
         failures.check(wanted in version, f"tenon-plan --version says {version}, not {wanted}")
         check_texts(prefix, failures)
         check_completion(prefix, failures)
+        check_documents(prefix, failures)
         checked = run(prefix / "bin/tenon-plan", "--check", "planner/tasks/box_on_table_2d.yaml",
                       "--cell", "hw/cells/gantry3.yaml", cwd=prefix / "share/tenon")
         failures.check("nothing stands against" in checked, f"--check from the installation says {checked}")

@@ -5,6 +5,8 @@ printed. A command that nobody has thought of fails, and so does a word about a 
   commands.py BIN RUNS SOURCE BUILD          types what takes seconds
   commands.py BIN RUNS SOURCE BUILD --slow   types what takes minutes
 
+Links of all documents lead somewhere.
+
 RUNS: the program that executes the runs and writes their logs. Commands are typed in a folder that looks like a clone,
 with the programs on the path and plan.tnp, run.lcmlog and result.json as the READMEs' commands before them leave them.
 """
@@ -17,8 +19,12 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from markdown_links import dead_links  # pylint: disable=wrong-import-position
+
 STARTS = re.compile(r"(\./|build/|sim/|tests/|tenon-|cmake |ctest |apt-get |ip link |slcand |parallel |sbatch |mkdir |unshare "
-                    r"|[A-Z_]+=\S)")
+                    r"|lcm-gen |[A-Z_]+=\S)")
+FOLDERS = ("planner", "executor", "hw", "sim", "shared", "lcmtypes", "tests")
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.M | re.S)
 
 # The plan of the READMEs is one that the build makes by the READMEs' own words, see tests/plans/CMakeLists.txt.
@@ -37,6 +43,7 @@ TYPED = {
     "tenon-monitor --lcm-url 'file://run.lcmlog?speed=4'": None,
     "tenon-inspect plan.tnp --log run.lcmlog --report run.html": "run.html",
     "tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap": "run.mcap",
+    "lcm-gen --cpp lcmtypes/*.lcm": None,
 }
 SLOW = {
     PLANNED: "plan.tnp",
@@ -91,9 +98,11 @@ LANGUAGES = {
 
 
 def readmes(source):
-    files = [*source.glob("*.md"), *(file for folder in ("planner", "executor", "hw", "sim", "shared", "tests")
-                                     for file in (source / folder).rglob("README.md"))]
-    return sorted(file for file in files if file.name == "README.md")
+    return [file for file in documents(source) if file.name == "README.md"]
+
+
+def documents(source):
+    return sorted([*source.glob("*.md"), *(file for folder in FOLDERS for file in (source / folder).rglob("*.md"))])
 
 
 def commands_of(text):
@@ -146,6 +155,7 @@ def account(source):
         named = [test for (kind, begin), test in LANGUAGES.items() if kind == language and text.startswith(begin)]
         if not named:
             failures.append(f"{where}: no test runs this block of {language}")
+    failures += [f"a dead link: {link}" for link in dead_links(documents(source))]
     for name in sorted({*BY_TEST.values(), *LANGUAGES.values()}):
         if not is_there(source, name):
             failures.append(f"there is no test '{name}'")
@@ -169,7 +179,7 @@ def is_there(source, test):
 
 def type_all(arguments, wanted, folder):
     failures = []
-    for name in ("planner", "hw", "sim", "shared"):
+    for name in ("planner", "hw", "sim", "shared", "lcmtypes"):
         (folder / name).symlink_to(arguments.source / name)
     shutil.copy(arguments.build / "plans" / f"{PLAN}.tnp", folder / "plan.tnp")
     with tempfile.TemporaryDirectory(prefix="tenon_runs_") as scratch:
