@@ -44,6 +44,7 @@ TYPED = {
     "tenon-inspect plan.tnp --log run.lcmlog --report run.html": "run.html",
     "tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap": "run.mcap",
     "lcm-gen --cpp lcmtypes/*.lcm": None,
+    "tenon-can check hw/robots/gantry3/robot.yaml": None,
 }
 SLOW = {
     PLANNED: "plan.tnp",
