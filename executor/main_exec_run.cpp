@@ -69,7 +69,8 @@ std::vector<std::pair<std::string, std::uint64_t>> named(const hw::ArmCounters& 
           {"unexpected_frames", c.unexpected_frames},
           {"emergencies", c.emergencies},
           {"send_failures", c.send_failures},
-          {"invalid_setpoints", c.invalid_setpoints}};
+          {"invalid_setpoints", c.invalid_setpoints},
+          {"unbraked_axes", c.unbraked_axes}};
 }
 
 /// On each bus.
@@ -184,6 +185,12 @@ int TaskRun::conclude(RunResult result) {
     write_json(options_.json, to_json(result, task_.cell()));
   } catch (const std::exception& error) {
     result.records.push_back({"json", options_.json, 0, 1, error.what()});
+  }
+  if (const std::uint64_t axes = arm_->counters().unbraked_axes; axes > 0) {
+    std::fprintf(stderr,
+                 "tenon-exec: told to stop, %s did not brake and lost voltage; see to the drives "
+                 "before the next run\n",
+                 axes == 1 ? "one axis" : (std::to_string(axes) + " axes").c_str());
   }
   const std::string losses = result.losses();
   if (!losses.empty()) std::fprintf(stderr, "tenon-exec: lost: %s\n", losses.c_str());

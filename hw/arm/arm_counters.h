@@ -16,6 +16,7 @@ struct ArmCounters {
   std::uint64_t emergencies = 0;
   std::uint64_t send_failures = 0;
   std::uint64_t invalid_setpoints = 0;  ///< not finite: they were not sent
+  std::uint64_t unbraked_axes = 0;      ///< told to stop they ran on, and lost their voltage
 };
 
 }  // namespace tenon::hw

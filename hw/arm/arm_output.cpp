@@ -46,7 +46,9 @@ void ArmOutput::send_setpoints(ArmRequest request, bool follow,
       continue;
     }
     // That all are numbers has been seen to.
+    const bool ran_on = joints_[i].runs_on();
     (void)joints_[i].update(request, follow, position[i]);
+    if (joints_[i].runs_on() && !ran_on) ++counters_.unbraked_axes;
     if (!packed_ && !send(joints_[i].command_frame())) {
       supervision_.setpoint_refused(i);
     }

@@ -21,11 +21,13 @@ JointChannel::JointChannel(const Joint& joint, std::uint32_t cycle_us)
       counts_per_unit_(joint.counts_per_unit),
       zero_counts_(joint.zero_counts),
       rated_effort_(joint.rated_effort),
-      stop_patience_(static_cast<int>(std::ceil(1e6 * kStopPatience_s / cycle_us))) {}
+      stop_patience_(static_cast<int>(std::ceil(1e6 * kStopPatience_s / cycle_us))),
+      braking_(joint, cycle_us) {}
 
 void JointChannel::reset() {
   seen_ = answered_ = reached_enabled_ = false;
   stop_cycles_ = 0;
+  braking_.restart();
   request_ = ArmRequest::kDisabled;
   sent_controlword_.reset();
   statusword_ = controlword_ = 0;
@@ -66,13 +68,20 @@ bool JointChannel::update(ArmRequest request, bool follow, double setpoint) {
     target_counts_ = position_counts_;
   }
   reached_enabled_ = request == ArmRequest::kEnabled && (reached_enabled_ || enabled);
+  watch_braking(request);
   controlword_ = next_controlword(request);
   request_ = request;
   answered_ = false;
   return valid;
 }
 
+void JointChannel::watch_braking(ArmRequest request) {
+  if (request == ArmRequest::kEnabled || !cia402::is_energised(state())) return braking_.restart();
+  braking_.update(position_counts_, answered_);
+}
+
 std::uint16_t JointChannel::next_controlword(ArmRequest request) {
+  if (braking_.runs_on()) return tenon::canopen::kCommandDisableVoltage;
   const bool unheard = !answered_ && cia402::is_energised(state());
   const bool stopping = state() == DriveState::kQuickStopActive || unheard;
   stop_cycles_ = request == ArmRequest::kDisabled && stopping ? stop_cycles_ + 1 : 0;

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "hw/arm/braking_watch.h"
 #include "hw/cia402/drive_state.h"
 #include "shared/cell/robot.h"
 #include "shared/ports/arm.h"
@@ -42,7 +43,7 @@ class JointChannel {
   /// A drive in its quick stop that is to be disabled goes on ramping down and closes its brake by
   /// itself; disable voltage would let the axis go before. The same for a drive that may be on and
   /// did not answer in this cycle. What is not off after kStopPatience_s loses its voltage all the
-  /// same.
+  /// same, and an axis that runs_on() at once: its brake is what can still stop it.
   [[nodiscard]] bool update(ArmRequest request, bool follow, double setpoint);
   /// Whether a setpoint (m or rad) is a number, in counts too.
   [[nodiscard]] bool is_target(double setpoint) const;
@@ -62,6 +63,8 @@ class JointChannel {
   [[nodiscard]] cia402::DriveState state() const { return cia402::decode_statusword(statusword_); }
   /// Whether the drive has been in operation enabled since it was last asked to be so.
   [[nodiscard]] bool reached_enabled() const { return reached_enabled_; }
+  /// Told to stop, its drive does not brake.
+  [[nodiscard]] bool runs_on() const { return braking_.runs_on(); }
 
  private:
   std::uint8_t node_ = 0;
@@ -70,7 +73,9 @@ class JointChannel {
   double zero_counts_ = 0.0;
   double rated_effort_ = 0.0;
   int stop_patience_ = 0;  ///< cycles
+  BrakingWatch braking_;
 
+  void watch_braking(ArmRequest request);
   [[nodiscard]] std::uint16_t next_controlword(ArmRequest request);
 
   bool seen_ = false;

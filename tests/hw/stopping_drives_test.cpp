@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "hw/arm/braking_watch.h"
 #include "tests/hw/gantry_on_bus.h"
 
 namespace tenon::hw {
@@ -73,6 +74,67 @@ TEST(StoppingDrives, InAFaultTheDrivesOwnWordsSayThatTheyAreOff) {
   for (int i = 0; i < 20; ++i) gantry.cycle(ArmRequest::kDisabled);
   EXPECT_EQ(gantry.arm.state(), ArmState::kFault);
   EXPECT_EQ(gantry.feedback.joints_off, 0b111U);
+}
+
+// 0.5 m/s at 1e6 counts a metre and 2 ms are 1000 counts a cycle.
+class AxisThatIsToStop : public ::testing::Test {
+ protected:
+  /// @return after how many cycles it is found out, of at most so many; 0: it is not
+  int found_out(int counts_a_cycle, int cycles, int jump_at = -1, int gain = 0) {
+    BrakingWatch watch(joint(), 2000);
+    std::int32_t at = 0;
+    for (int i = 1; i <= cycles; ++i) {
+      at += i == jump_at ? 100'000 : counts_a_cycle + gain * i;
+      watch.update(at, true);
+      if (watch.runs_on()) return i;
+    }
+    return 0;
+  }
+  static Joint joint() {
+    Joint joint = gantry_robot().joints.front();
+    joint.speed_max = 0.5;
+    joint.acceleration_max = 5.0;
+    return joint;
+  }
+};
+
+TEST_F(AxisThatIsToStop, MayGoAtItsFullSpeedUntilItsRampIsOver) {
+  EXPECT_EQ(found_out(1000, 99), 0);
+  // 0.1 s of ramp and 0.1 s of margin, then three cycles.
+  EXPECT_EQ(found_out(1000, 200), 103);
+}
+
+// The first position has none before it, the second makes the speed that it had.
+TEST_F(AxisThatIsToStop, IsFoundOutOnceItIsFasterByAQuarterOfItsFullSpeed) {
+  EXPECT_EQ(found_out(100, 50, -1, 30), 13) << "three cycles beyond 160 and 250";
+  EXPECT_EQ(found_out(100, 90, -1, 2), 0);
+  EXPECT_EQ(found_out(1600, 50), 4) << "nothing is that fast";
+}
+
+TEST_F(AxisThatIsToStop, IsNotFoundOutByOnePositionThatJumps) {
+  EXPECT_EQ(found_out(0, 500, 2), 0);
+  EXPECT_EQ(found_out(0, 500, 20), 0);
+  EXPECT_EQ(found_out(0, 500, 200), 0);
+}
+
+TEST_F(AxisThatIsToStop, IsNotJudgedByWhatItDidNotAnswer) {
+  BrakingWatch watch(joint(), 2000);
+  for (int i = 1; i <= 90; ++i) watch.update(i * 2000, i % 2 == 0);
+  EXPECT_FALSE(watch.runs_on());
+}
+
+// By its answers it runs away from the ramp that it says it follows.
+TEST(StoppingDrives, OneThatRunsOnInItsQuickStopLosesItsVoltageAtOnce) {
+  GantryOnBus gantry;
+  gantry.nodes[2]->stays_in_quick_stop = true;
+  ASSERT_TRUE(gantry.prepare_and_enable());
+  for (int i = 0; i < 12; ++i) {
+    gantry.nodes[2]->position_counts += 100'000;
+    gantry.cycle(ArmRequest::kQuickStop);
+  }
+  EXPECT_EQ(gantry.nodes[2]->statusword, 0x0250);
+  EXPECT_EQ(gantry.arm.counters().unbraked_axes, 1U);
+  EXPECT_EQ(controlwords(*gantry.nodes[1]).count(0x00), 0U) << "the others are left to their ramps";
 }
 
 }  // namespace
