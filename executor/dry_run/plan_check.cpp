@@ -23,6 +23,7 @@ class Checker {
   }
 
   std::vector<std::string> run() {
+    check_envelopes();
     check_friction();
     check_latency();
     check_compliance();
@@ -35,6 +36,14 @@ class Checker {
 
  private:
   void refuse(std::string why) { refusals_.push_back(std::move(why)); }
+
+  // The planner writes them into every plan that its search has found.
+  void check_envelopes() {
+    if (plan_.check_envelopes || plan_.method != PlanMethod::kMha) return;
+    refuse(
+        "the plan has no envelopes, and its method, mha, always writes them: it was changed since "
+        "it was made; plan again");
+  }
 
   void check_friction() {
     if (!cell_.joint_torque || !cell_.joint_torque->joints.empty()) return;

@@ -19,8 +19,8 @@ enum class EndReason : std::uint8_t {
   kUnreachable = 8,        ///< the command has no joint positions; value: error left in m or rad
   kJointLimit = 9,         ///< index: joint; value: position asked for, bound
   kJointSpeed = 10,        ///< index: joint; value: speed asked for, bound
-  kForceFault = 11,        ///< value: N, bound
-  kTorqueFault = 12,       ///< value: Nm, bound
+  kForceFault = 11,        ///< value: N, bound; index: a joint that stays behind, wanted: by that
+  kTorqueFault = 12,       ///< value: Nm, bound; likewise
   kSensorSaturated = 13,   ///< index: sensor axis; value: reading, bound
   kSensorNotFinite = 14,
   kArmFault = 15,         ///< arm_fault
@@ -42,8 +42,9 @@ enum class EndReason : std::uint8_t {
   kTareDrift = 31,       ///< index: wrench axis; value: what its mean moved by at rest, bound
   kEncoderJump = 32,     ///< index: joint; value: m or rad since its last answer, bound
   kZeroMoved = 33,       ///< index: wrench axis; value: mean at the end, nothing touching, bound
+  kNotDisabled = 34,     ///< index: joint whose drive has not said that it is off; value: s waited
 };
-inline constexpr EndReason kLastEndReason = EndReason::kZeroMoved;
+inline constexpr EndReason kLastEndReason = EndReason::kNotDisabled;
 [[nodiscard]] const char* to_string(EndReason reason);
 
 /// How the motion comes to rest.

@@ -194,6 +194,13 @@ constexpr std::array kTable = {
           "wrench at the plan's end, where no contact is held: two means of 0.2 s against half "
           "the off-thresholds",
           {.cycles = 2, .time_s = kZeroWatch_s}, "the plan's end", EndManner::kHold),
+    FaultRow{.reason = EndReason::kNotDisabled,
+             .name = "not_disabled",
+             .detector = "the drives' own words, once they are told to go off",
+             .bound = {.cycles = 2, .time_s = kDisableTimeout_s},
+             .since = "the order",
+             .reaction = EndManner::kQuickStop,
+             .end_state = EndState::kUnknown},
 };
 
 constexpr bool every_reason_has_a_row() {
@@ -301,6 +308,8 @@ const char* to_string(EndState state) {
       return "the same, by the drives themselves once the heartbeat is missed";
     case EndState::kBrakeSlips:
       return "a brake slips; power by the cell's `on_brake_failure`";
+    case EndState::kUnknown:
+      return "nobody knows: a drive may have power";
   }
   return "?";
 }

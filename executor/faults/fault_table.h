@@ -31,6 +31,7 @@ enum class EndState : std::uint8_t {
   kOff = 0,          ///< brakes on, power off
   kOffByDrives = 1,  ///< the same, but by the drives themselves, once the heartbeat is missed
   kBrakeSlips = 2,  ///< a brake that is on does not hold; power as the cell's on_brake_failure says
+  kUnknown = 3,     ///< a drive has not said that it is off
 };
 
 struct FaultRow {

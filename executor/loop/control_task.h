@@ -37,7 +37,7 @@ class ControlTask {
     int tare_samples = kTareSamples;
     double tare_motion_max = 2e-4;  ///< m or rad that a joint may move while taring
     double enable_timeout_s = kEnableTimeout_s;
-    double disable_timeout_s = 3.0;
+    double disable_timeout_s = kDisableTimeout_s;
     double hold_s = 0.2;
     double quick_stop_s = 0.5;  ///< left to the drives to ramp down; more where a joint needs more
     double brake_watch_s =
@@ -152,7 +152,10 @@ class ControlTask {
   [[nodiscard]] Turn wait_for_disabled(const ArmFeedback& feedback);
   [[nodiscard]] std::uint32_t joints_off(const ArmFeedback& feedback) const;
   void follow_brakes(const ArmFeedback& feedback);
-  [[nodiscard]] Turn watch_brakes();
+  [[nodiscard]] Turn watch_brakes(const ArmFeedback& feedback);
+  [[nodiscard]] bool brakes_under_watch() const;
+  void name_unseen();
+  void name_not_disabled(std::uint32_t off);
   [[nodiscard]] Turn keep_power(const ArmFeedback& feedback) const;
   void write_record(std::int64_t now_ns, const ArmFeedback& feedback, const Command& command);
 

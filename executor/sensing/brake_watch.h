@@ -35,6 +35,8 @@ class BrakeWatch {
   /// Bit i: whether joint i's brake holds is not known. Its drive never said that it is off, or it
   /// does not answer any more.
   [[nodiscard]] std::uint32_t unwatched() const;
+  /// In a row without an answer of this joint.
+  [[nodiscard]] int silent_cycles(std::size_t joint) const { return joints_[joint].silent_cycles; }
 
  private:
   struct JointWatch {

@@ -34,11 +34,17 @@ class FollowingWatch {
   /// @return the first joint that has been too far off in more than cycles_max() cycles in a row
   [[nodiscard]] std::optional<Excess> update(const JointVector& measured, std::uint32_t fresh);
 
+  /// The joint that was furthest off in terms of its bound within the last tenth of a second, if
+  /// that was more than a quarter: it need not be too far off to be what another fault comes from,
+  /// and a servo that makes up for it at once pushes hardest when it is back.
+  [[nodiscard]] std::optional<Excess> laggard() const;
+
   [[nodiscard]] int cycles_max() const { return cycles_max_; }
 
  private:
   static constexpr std::size_t kWindowMost = 64;
 
+  void remember(std::size_t joint, double error);
   [[nodiscard]] double error_of(std::size_t joint, double position) const;
 
   std::size_t joint_count_;
@@ -48,6 +54,9 @@ class FollowingWatch {
   std::array<JointVector, kWindowMost> commands_{};
   std::size_t newest_ = 0;
   std::array<int, kMaxJoints> cycles_off_{};
+  JointVector furthest_{};  ///< of the last cycles
+  std::array<int, kMaxJoints> furthest_age_{};
+  int remembered_cycles_ = 0;
 };
 
 }  // namespace tenon::executor

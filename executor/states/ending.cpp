@@ -201,6 +201,27 @@ std::string of_the_sensor(const Ending& e) {
   return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);
 }
 
+std::string too_hard(const Ending& e, const Cell& cell) {
+  const bool force = e.reason == EndReason::kForceFault;
+  std::string text = format(force ? "external force %.4g N above force_fault_N = %.4g"
+                                  : "external torque %.4g Nm above torque_fault_Nm = %.4g",
+                            e.value, e.bound);
+  if (e.index < 0) return text;
+  const Joint joint = joint_of(cell, e.index);
+  return text +
+         format(
+             "; just before, node %d (%s) was %.3g %s from where it was commanded: see to that "
+             "drive first",
+             static_cast<int>(joint.node), joint.name.c_str(), e.wanted, joint_unit(joint));
+}
+
+std::string not_disabled(const Ending& e, const Joint& joint) {
+  return format(
+      "node %d (%s) has not said that it is off within %.3g s: it may be under power; cut the "
+      "cell's power before anybody reaches in",
+      static_cast<int>(joint.node), joint.name.c_str(), e.value);
+}
+
 std::string of_a_joint(const Ending& e, const Cell& cell, const Plan& plan) {
   if (e.reason == EndReason::kBrakeFailed) return describe(e.slip, cell);
   const Joint joint = joint_of(cell, e.index);
@@ -212,6 +233,7 @@ std::string of_a_joint(const Ending& e, const Cell& cell, const Plan& plan) {
   if (e.reason == EndReason::kJointSpeed) return joint_speed(e, joint);
   if (e.reason == EndReason::kFeedbackMissing) return feedback_missing(e, joint);
   if (e.reason == EndReason::kEncoderJump) return encoder_jump(e, joint);
+  if (e.reason == EndReason::kNotDisabled) return not_disabled(e, joint);
   return following_error(e, joint);
 }
 
@@ -235,9 +257,8 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kUnreachable:
       return unreachable(e);
     case EndReason::kForceFault:
-      return format("external force %.4g N above force_fault_N = %.4g", e.value, e.bound);
     case EndReason::kTorqueFault:
-      return format("external torque %.4g Nm above torque_fault_Nm = %.4g", e.value, e.bound);
+      return too_hard(e, cell);
     case EndReason::kArmFault:
       return arm_fault(e.arm_fault, arm_fault_text);
     case EndReason::kArmNotEnabled:
@@ -271,6 +292,7 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kBrakeFailed:
     case EndReason::kFollowingError:
     case EndReason::kEncoderJump:
+    case EndReason::kNotDisabled:
       return of_a_joint(e, cell, plan);
   }
   return "?";

@@ -124,7 +124,8 @@ RunResult common_result(const ControlTask& task, const Plan& plan, const CycleRu
 
 // The drives have the last word.
 void conclude(RunResult& result, const ControlTask& task, bool success) {
-  if (task.finished() && !task.ending().disable_confirmed) {
+  const bool named = result.reason == EndReason::kNotDisabled;
+  if (task.finished() && !task.ending().disable_confirmed && !named) {
     result.message += "; the arm did not confirm that it is disabled";
   }
   const bool brakes_seen = result.slip.joint < 0 && result.brakes_unwatched == 0;

@@ -20,12 +20,17 @@ void stop_on_signals(std::atomic<bool>& stop) {
   asked.store(&stop, std::memory_order_relaxed);
   struct sigaction action {};
   action.sa_handler = &ask_to_stop;  // no SA_RESTART: a connection that is not made ends too
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+  const auto stop_on = [&action](int signal) {
     struct sigaction before {};
-    (void)::sigaction(signal, &action, &before);
-    if (signal == SIGHUP && before.sa_handler == SIG_IGN)
-      (void)::sigaction(signal, &before, nullptr);
+    (void)::sigaction(signal, nullptr, &before);
+    const bool wanted = signal == SIGINT || signal == SIGTERM || signal == SIGQUIT;
+    if (wanted || before.sa_handler != SIG_IGN) (void)::sigaction(signal, &action, nullptr);
+  };
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM,
+                           SIGPROF, SIGPOLL, SIGPWR, SIGSTKFLT, SIGXCPU}) {
+    stop_on(signal);
   }
+  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) stop_on(signal);
 }
 
 void survive_full_disks() { (void)std::signal(SIGXFSZ, SIG_IGN); }

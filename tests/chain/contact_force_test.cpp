@@ -63,6 +63,7 @@ Plan plan_without_steps(const Compliance& compliance, double speed_mps) {
   plan.compliance = compliance;
   plan.compliance.compliant_axes = 0x03;
   plan.latency_max_s = 1.0;
+  plan.method = PlanMethod::kSingleParticle;
   plan.check_envelopes = false;
   ParameterSet set;
   set.speeds.contact_mps = set.speeds.approach_mps = speed_mps;

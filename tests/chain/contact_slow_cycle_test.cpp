@@ -21,7 +21,8 @@ Cell slow_cell() { return load_cell(in_tree("tests/plans/slow_gantry3/cell.yaml"
 TEST(ContactAtASlowCycle, APlanOfTheTaskAsItStandsIsRefused) {
   // D = 1500 against 1.5 * 5e4 * 35 ms, and 6 + 5e4 * 0.05 * (80 ms + 2 / 1500).
   const std::array<Vector6, 1> way = {Vector6::Unit(0)};
-  const Plan plan = planner::draft_plan(box_task(), box_start("1"), {5e4, 0.035}, way);
+  Plan plan = planner::draft_plan(box_task(), box_start("1"), {5e4, 0.035}, way);
+  plan.method = PlanMethod::kSingleParticle;  // a draft has no envelopes
   const std::vector<std::string> refusals = executor::check_plan(plan, slow_cell());
   ASSERT_GE(refusals.size(), 2U);  // a way along x alone does not lead to the goal either
   EXPECT_NE(refusals[0].find("1500"), std::string::npos) << refusals[0];

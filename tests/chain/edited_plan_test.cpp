@@ -77,5 +77,15 @@ TEST(EditedPlan, OneWithAnotherGoalIsNotDone) {
   expect_not_at_goal(plan);
 }
 
+// What its steps may come to, nobody could say.
+TEST(EditedPlan, OneWithoutItsEnvelopesIsNotStarted) {
+  Plan plan = box_plan("1");
+  plan.check_envelopes = plan.check_places = false;
+  plan.steps.back().displacement *= -1.0;
+  const auto refusals = executor::check_plan(plan, gantry_cell());
+  ASSERT_FALSE(refusals.empty());
+  EXPECT_NE(refusals.front().find("no envelopes"), std::string::npos) << refusals.front();
+}
+
 }  // namespace
 }  // namespace tenon::tests

@@ -26,6 +26,7 @@ Plan back_and_forth(const Cell& cell, const Task& task) {
   Plan plan = planned_box(cell, "1").plan;
   plan.goal = plan.start;
   plan.compliance = task.compliance;
+  plan.method = PlanMethod::kSingleParticle;
   plan.check_envelopes = false;
   plan.parameter_sets.resize(1);
   plan.steps.clear();

@@ -323,7 +323,7 @@ TEST(Controller, AnArmThatDoesNotDisableIsSaidSo) {
   Bench bench(plan);
   bench.arm.never_disables = true;
   bench.run();
-  EXPECT_EQ(bench.controller.ending().reason, EndReason::kPlanDone);
+  EXPECT_EQ(bench.controller.ending().reason, EndReason::kNotDisabled);
   EXPECT_FALSE(bench.controller.ending().disable_confirmed);
 }
 

@@ -67,6 +67,29 @@ TEST(FollowingWatch, AtRestAJointThatIsPushedAwayIsNamedAfterTwentyMilliseconds)
   EXPECT_EQ(excess->bound, 0.005);
 }
 
+// Before it is too far off itself, it may have led the tool into something.
+TEST(FollowingWatch, BeyondAQuarterOfItsBoundAJointLags) {
+  FollowingWatch watch(robot());
+  watch.rest_at({});
+  JointVector measured{};
+  measured[0] = 0.001;
+  EXPECT_FALSE(watch.update(measured, kAll));
+  EXPECT_FALSE(watch.laggard());
+  measured[1] = -0.003;
+  measured[2] = 0.004;
+  EXPECT_FALSE(watch.update(measured, kAll));
+  ASSERT_TRUE(watch.laggard());
+  EXPECT_EQ(watch.laggard()->joint, 2);
+  EXPECT_NEAR(watch.laggard()->error, 0.004, 1e-12);
+  EXPECT_FALSE(watch.update({}, kAll));
+  EXPECT_TRUE(watch.laggard()) << "it has just come back";
+  for (int cycle = 0; cycle < 60; ++cycle) EXPECT_FALSE(watch.update({}, kAll));
+  EXPECT_FALSE(watch.laggard());
+  EXPECT_FALSE(watch.update(measured, kAll));
+  watch.rest_at(measured);
+  EXPECT_FALSE(watch.laggard()) << "it is where it should be";
+}
+
 TEST(FollowingWatch, AJointThatDoesNotAnswerIsNotJudged) {
   FollowingWatch watch(robot());
   watch.rest_at({});

@@ -257,7 +257,9 @@ TEST(RunResult, AnArmThatNeverDisabledIsNoSuccess) {
   bench.run();
   const RunResult result = gather_result(bench.controller, bench.runner, 0, "");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.message.find("did not confirm"), std::string::npos);
+  EXPECT_EQ(result.reason, EndReason::kNotDisabled);
+  EXPECT_NE(result.message.find("has not said that it is off within 3 s"), std::string::npos)
+      << result.message;
 }
 
 TEST(RunResult, AStepIsOneLineForPeople) {

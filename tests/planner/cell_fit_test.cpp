@@ -25,11 +25,13 @@ Cell cell_with(std::uint32_t cycle_us, double lag_s, double contact_stiffness_Np
   return cell;
 }
 
-// A plan of one step as it would be drafted.
+// A plan of one step as it would be drafted, of a method that writes no envelopes.
 Plan plan_of(const CellFit& fit) {
   const std::vector<Vector6> way = {
       displacement_between(fit.task.starts.front().pose, fit.task.goal)};
-  return draft_plan(fit.task, fit.task.starts.front(), fit.assumptions, way);
+  Plan plan = draft_plan(fit.task, fit.task.starts.front(), fit.assumptions, way);
+  plan.method = PlanMethod::kSingleParticle;
+  return plan;
 }
 
 TEST(CellFit, AFastCellChangesNothing) {
