@@ -19,16 +19,18 @@ std::string at(const Vector3& p) { return format("(%.4g, %.4g, %.4g) m", p.x(), 
 
 const char* sign_text(int sign) { return sign > 0 ? "+" : "-"; }
 
+std::string oversize_text(const Task& task) {
+  if (task.oversize_m <= 0.0) return "";
+  return format(", with a part %g mm larger than drawn (oversize_m)", 1e3 * task.oversize_m);
+}
+
 /// "peg stands 45 mm deep in bottom (free by +z)"
 std::string overlap_text(const Overlap& overlap, const Task& task) {
   std::string text =
       overlap.held + format(" stands %.3g mm deep in ", 1e3 * overlap.depth_m) +
       overlap.environment +
       format(" (the shortest way out is %s%s)", sign_text(overlap.sign), axis_name(overlap.axis));
-  if (task.oversize_m > 0.0) {
-    text += format(", with a part %g mm larger than drawn (oversize_m)", 1e3 * task.oversize_m);
-  }
-  return text;
+  return text + oversize_text(task);
 }
 
 class Checker {
@@ -44,6 +46,7 @@ class Checker {
   void goal() {
     const auto overlap = probe_.deepest(task_.goal);
     if (overlap) {
+      if (tighter(*overlap)) return;
       add(Weight::kRefused,
           "the goal at " + at(task_.goal.position_m) +
               " is in collision: " + overlap_text(*overlap, task_) +
@@ -63,6 +66,21 @@ class Checker {
                               " nothing is near: no push from it, along any coordinate, touches "
                               "the environment");
     }
+  }
+
+  // Out of the one it is in the other: no place of the goal helps. @return it is so, and told
+  bool tighter(const Overlap& overlap) {
+    const Pose beside = moved(task_.goal, overlap.axis, overlap.sign * overlap.depth_m);
+    const auto other = probe_.deepest(beside);
+    const bool between = other && other->axis == overlap.axis && other->sign == -overlap.sign &&
+                         other->environment != overlap.environment;
+    if (!between) return false;
+    add(Weight::kRefused, "at the goal at " + at(task_.goal.position_m) + " " + overlap.held +
+                              format(" is %.2g mm wider along %s than the room between ",
+                                     1e3 * other->depth_m, axis_name(overlap.axis)) +
+                              overlap.environment + " and " + other->environment +
+                              oversize_text(task_) + ": make it narrower, or the room wider");
+    return true;
   }
 
   void start(const Start& start) {
