@@ -218,7 +218,7 @@ class EvaluationPage {
       this.words.replaceChildren(...(ended ? this.ending(entry) : this.stepWords(step)));
     }
     const names = this.current.touchedAt(time);
-    const felt = [0, 1, 2].map((axis) => this.current.wrenchAt(time, axis).toFixed(1));
+    const felt = [0, 1, 2].map((axis) => fixed(this.current.wrenchAt(time, axis), 1));
     this.state.replaceChildren(
       termLine("Time", `${time.toFixed(2)} of ${this.current.end.toFixed(2)} s`),
       termLine("Touches", names.length ? names.join(", ") : "nothing"),

@@ -129,7 +129,7 @@ class RunPage {
 
   // What the shift says: the environment was not where the task has it.
   fitNote() {
-    const way = this.run.fit.slice(0, 3).map((value) => (-1e3 * value).toFixed(1));
+    const way = this.run.fit.slice(0, 3).map((value) => fixed(-1e3 * value, 1));
     const text =
       this.run.fit[3] > 1 - 1e-9
         ? `The run ended ${way.join(", ")} mm (x, y, z) from the drawn goal: so far was the environment from ` +
@@ -229,7 +229,7 @@ class RunPage {
         termLine(
           "Feels",
           AXES.slice(0, 3)
-            .map((axis, i) => `${axis} ${felt[i].toFixed(1)}`)
+            .map((axis, i) => `${axis} ${fixed(felt[i], 1)}`)
             .join(", ") + " N",
         ),
       );

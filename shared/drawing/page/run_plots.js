@@ -134,7 +134,7 @@ class Plot {
     this.series.forEach((one, i) => {
       const value = one.values[Math.min(index, one.values.length - 1)];
       const known = value !== null && value !== undefined;
-      this.values[i].textContent = known ? `${value.toFixed(this.digits)} ${this.unit}` : "–";
+      this.values[i].textContent = known ? `${fixed(value, this.digits)} ${this.unit}` : "–";
     });
   }
 

@@ -31,10 +31,15 @@ function shown(value, axis) {
   return axis < 3 ? 1e3 * value : (180 / Math.PI) * value;
 }
 
+// With so many digits, and no sign where they are all zero.
+function fixed(value, digits) {
+  return value.toFixed(digits).replace(/^-(?=[0.]*$)/, "");
+}
+
 function amount(value, axis) {
   const number = shown(value, axis);
   const digits = Math.abs(number) < 10 ? 2 : 1;
-  return number.toFixed(digits) + (axis < 3 ? " mm" : "°");
+  return fixed(number, digits) + (axis < 3 ? " mm" : "°");
 }
 
 // The longest duration of each move over all chains: who is faster rests until the last has ended.

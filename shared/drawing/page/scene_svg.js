@@ -111,8 +111,22 @@ class SvgScene {
     return svgElement("circle", { cx, cy, r: radius * this.size, ...attributes });
   }
 
+  // An arm may go where nobody foresaw. True: the picture has to become larger.
+  outgrown(pose) {
+    const { low, high } = this.bounds;
+    const inside = pose.slice(0, 3).every((value, i) => value >= low[i] && value <= high[i]);
+    if (inside) return false;
+    const held = this.data.scene.held.flatMap((shape) => shape.points_m.map(Math.abs));
+    const reach = held.reduce((most, value) => Math.max(most, value), 0);
+    const lower = low.map((value, i) => Math.min(value, pose[i] - reach));
+    const upper = high.map((value, i) => Math.max(value, pose[i] + reach));
+    this.bounds = { ...this.bounds, low: lower, high: upper };
+    return true;
+  }
+
   draw(state, options) {
     this.last = [state, options];
+    if (state.front && !state.trails.length && this.outgrown(state.front)) this.build();
     const colour = this.palette;
     const unit = this.size;
     for (const { name, path } of this.environment) {
