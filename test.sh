@@ -9,7 +9,7 @@
 #                              reader of its makers (both need npm's registry)
 #   ./test.sh [full] STAGE...  only these stages, of: format lint unit guest asan tsan
 #                              and on demand: fuzz (full: a million runs of every binary decoder, 200,000 of
-#                              every text loader; hours), and planted, which plants faults in a copy and shows that
+#                              every text loader and of both ends of CANopen; hours), and planted, which plants faults in a copy and shows that
 #                              the tests see each
 #
 # A run of all stages that passed leaves the hash of the tree that it passed on in build/tested: who asks
