@@ -73,7 +73,7 @@ std::string takes(const CLI::Option& option) {
 
 /// The same for a reader: "a|b" of "TEXT:{a,b}", "INT in [1 - 9]" of "UINT:INT in [1 - 9]".
 std::string value_of(const CLI::Option& option) {
-  const std::string type = takes(option);
+  std::string type = takes(option);
   const std::size_t colon = type.find(':');
   if (colon == std::string::npos || colon + 1 == type.size()) return type;
   std::string value = type.substr(colon + 1);
