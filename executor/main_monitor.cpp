@@ -26,6 +26,7 @@
 #include "shared/config/signals.h"
 #include "shared/system/lcm_url.h"
 #include "shared/system/monotonic_clock.h"
+#include "shared/system/whole_datagrams.h"
 
 namespace tenon::executor {
 namespace {
@@ -60,6 +61,7 @@ void subscribe(lcm::LCM& lcm, Listener& listener) {
        {kCycleChannel, kStepChannel, kRunChannel, kSetupChannel, kStatusChannel}) {
     lcm.subscribeFunction(channel, &Listener::take, &listener)->setQueueCapacity(kQueue);
   }
+  take_whole_datagrams_only();
 }
 
 // Waits for messages, at most kWait_ms. False: nothing will come any more, as at the end of a log.

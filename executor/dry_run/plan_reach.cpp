@@ -114,8 +114,11 @@ std::optional<GoalGap> goal_gap(const Plan& plan, const ReachBox& reach, const P
   std::optional<GoalGap> worst;
   double worst_excess = 0.0;
   for (int axis = 0; axis < 6; ++axis) {
-    if (!has(plan.coordinates, axis)) continue;
-    const double slack = axis < 3 ? slack_m + plan.goal_tolerance_m : slack_rad;
+    // Beside its coordinates the plan goes nowhere; a file's floats turn by a little.
+    constexpr double kTurnedLeast_rad = 1e-3;
+    const bool searched = has(plan.coordinates, axis);
+    const double turned_rad = searched ? slack_rad : std::max(slack_rad, kTurnedLeast_rad);
+    const double slack = axis < 3 ? slack_m + plan.goal_tolerance_m : turned_rad;
     const auto beyond = [&](double at) {
       return std::max(reach.low[axis] - slack - at, at - reach.high[axis] - slack);
     };

@@ -76,8 +76,8 @@ struct GoalGap {
 /// goal and end must both lie where the plan's ways end.
 /// @param reach done_reach(plan)  @param tool as it stands at the end, task frame
 /// @param slack_m, slack_rad by which the tool may have stood beside the plan's start
-/// @return the worst axis of the plan's coordinates; empty where all is well, or the plan has no
-/// goal tolerance, and so no goal
+/// @return the worst axis; beside the plan's coordinates goal and end are the start's. Empty where
+/// all is well, or the plan has no goal tolerance, and so no goal
 [[nodiscard]] std::optional<GoalGap> goal_gap(const Plan& plan, const ReachBox& reach,
                                               const Pose& tool, double slack_m, double slack_rad);
 

@@ -43,8 +43,9 @@ enum class EndReason : std::uint8_t {
   kEncoderJump = 32,     ///< index: joint; value: m or rad since its last answer, bound
   kZeroMoved = 33,       ///< index: wrench axis; value: mean at the end, nothing touching, bound
   kNotDisabled = 34,     ///< index: joint whose drive has not said that it is off; value: s waited
+  kNotHeld = 35,         ///< index: joint; value: m or rad from its command, bound: m, of the tool
 };
-inline constexpr EndReason kLastEndReason = EndReason::kNotDisabled;
+inline constexpr EndReason kLastEndReason = EndReason::kNotHeld;
 [[nodiscard]] const char* to_string(EndReason reason);
 
 /// How the motion comes to rest.

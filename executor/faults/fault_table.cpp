@@ -201,6 +201,10 @@ constexpr std::array kTable = {
              .since = "the order",
              .reaction = EndManner::kQuickStop,
              .end_state = EndState::kUnknown},
+    fault(EndReason::kNotHeld, "not_held",
+          "tool's pose against its command, from the plan's end until the brakes hold: half of the "
+          "goal's tolerance, in the brakes all of it",
+          {.cycles = 2, .time_s = kHeldPatience_s}, "an error beyond that", EndManner::kHold),
 };
 
 constexpr bool every_reason_has_a_row() {

@@ -145,7 +145,8 @@ Event ControlTask::remember(const Ending& ending) {
   bool worse = fault && end_manner(ending_.reason) != EndManner::kQuickStop;
   if (state_ >= State::kDisabling) worse = fault && went_well(ending_.reason) && !asked;
   if (slipped) worse = went_well(ending_.reason);
-  const bool revealed = ending.reason == EndReason::kZeroMoved;
+  const bool revealed =
+      ending.reason == EndReason::kZeroMoved || ending.reason == EndReason::kNotHeld;
   if (first || worse || revealed) {
     const Ending before = ending_;
     ending_ = ending;

@@ -104,6 +104,9 @@ class ControlTask {
   [[nodiscard]] virtual Turn ramp_down() = 0;
   /// One cycle of kHolding.
   [[nodiscard]] virtual Turn hold() { return held(); }
+  /// The drives are off, and the brakes have what they hold.
+  /// @return what there is against the end that stands
+  [[nodiscard]] virtual std::optional<Ending> seen_in_brakes() { return std::nullopt; }
   /// The run ends for this reason, in the state that it is still in.
   virtual void on_ending(const Ending& /*ending*/) {}
   /// Commands the joints of this cycle, from kApproaching to kHolding.

@@ -162,7 +162,10 @@ ControlTask::Turn ControlTask::watch_brakes(const ArmFeedback& feedback) {
     name_not_disabled(~on);
     ending_.disable_confirmed = false;
   }
-  if (brakes_under_watch()) name_unseen();
+  if (brakes_under_watch()) {
+    name_unseen();
+    if (const auto seen = seen_in_brakes()) (void)event_of(*seen);
+  }
   return Event::kHeld;
 }
 

@@ -223,9 +223,40 @@ ControlTask::Turn Controller::ramp_down() {
   return time_s >= stop_.duration_s() ? Turn(Event::kAtRest) : Turn();
 }
 
+// A plan that is done has brought the tool where it was told. How far a joint may stay behind in
+// motion is its drive's to say, and may be more than the goal allows. Empty for a plan without
+// goal.
+std::optional<Ending> Controller::off_command(double bound_m) const {
+  if (bound_m <= 0.0) return std::nullopt;
+  const Pose told = kinematics().tool(joints().position());
+  const Vector6 off = displacement_between(told, supervision().tool());
+  const bool far =
+      off.head<3>().norm() > bound_m || off.tail<3>().norm() > parameters_.start_tolerance_rad;
+  if (!far) return std::nullopt;
+  const JointDifference worst = largest_difference(supervision().joints(), joints().position());
+  return Ending{
+      .reason = EndReason::kNotHeld, .index = worst.joint, .value = worst.value, .bound = bound_m};
+}
+
+// The half of the goal's tolerance that plans leave to their arms.
+std::optional<Ending> Controller::watch_hold() {
+  const auto off = off_command(0.5 * plan_.goal_tolerance_m);
+  unheld_cycles_ = off ? unheld_cycles_ + 1 : 0;
+  return unheld_cycles_ * cycle_s() > kHeldPatience_s ? off : std::nullopt;
+}
+
+// A brake lets its joint go a little before it holds.
+std::optional<Ending> Controller::seen_in_brakes() {
+  if (ending().reason != EndReason::kPlanDone) return std::nullopt;
+  return off_command(plan_.goal_tolerance_m);
+}
+
 // A plan that ends in free air is done only if it is free air: a zero that has moved meanwhile has
 // shifted whatever was met on the way. In a contact nobody can tell.
 ControlTask::Turn Controller::hold() {
+  if (ending().reason == EndReason::kPlanDone) {
+    if (const auto off = watch_hold()) return *off;
+  }
   const bool free = ending().reason == EndReason::kPlanDone && runner_.signature().bits == 0;
   if (!free || zero_told_ || time_in_state_s() >= kZeroWatch_s) return held();
   if (supervision().wrench_usable()) (void)zero_watch_.add(supervision().wrench());

@@ -60,6 +60,7 @@ class Controller : public ControlTask {
   [[nodiscard]] Turn run(const ArmFeedback& feedback) override;
   [[nodiscard]] Turn ramp_down() override;
   [[nodiscard]] Turn hold() override;
+  [[nodiscard]] std::optional<Ending> seen_in_brakes() override;
   void on_ending(const Ending& ending) override;
   [[nodiscard]] std::optional<Ending> command_joints() override;
   [[nodiscard]] Vector6 complete_motion() override;
@@ -77,6 +78,8 @@ class Controller : public ControlTask {
   }
   [[nodiscard]] std::optional<Ending> off_start() const;
   [[nodiscard]] Ending done() const;
+  [[nodiscard]] std::optional<Ending> off_command(double bound_m) const;
+  [[nodiscard]] std::optional<Ending> watch_hold();
   [[nodiscard]] double on_threshold(int axis) const;
   [[nodiscard]] int touching_axis(std::uint8_t axes) const;
 
@@ -101,6 +104,7 @@ class Controller : public ControlTask {
   StopProfile stop_;
   ZeroWatch zero_watch_;  ///< at the plan's end
   bool zero_told_ = false;
+  int unheld_cycles_ = 0;   ///< in a row, at the plan's end
   bool tool_left_ = false;  ///< the joints ramp down or hold by themselves
   Pose commanded_;          ///< tool pose behind the commanded joints
 };

@@ -215,6 +215,16 @@ std::string too_hard(const Ending& e, const Cell& cell) {
              static_cast<int>(joint.node), joint.name.c_str(), e.wanted, joint_unit(joint));
 }
 
+std::string not_held(const Ending& e, const Joint& joint) {
+  return format(
+      "the plan came to its end, but node %d (%s) is %.3g %s from where it was told to hold it, "
+      "and "
+      "the tool further than %.3g mm or turned: its drive does not follow, or its brake slips; "
+      "look "
+      "where the part is",
+      static_cast<int>(joint.node), joint.name.c_str(), e.value, joint_unit(joint), 1e3 * e.bound);
+}
+
 std::string not_disabled(const Ending& e, const Joint& joint) {
   return format(
       "node %d (%s) has not said that it is off within %.3g s: it may be under power; cut the "
@@ -234,7 +244,14 @@ std::string of_a_joint(const Ending& e, const Cell& cell, const Plan& plan) {
   if (e.reason == EndReason::kFeedbackMissing) return feedback_missing(e, joint);
   if (e.reason == EndReason::kEncoderJump) return encoder_jump(e, joint);
   if (e.reason == EndReason::kNotDisabled) return not_disabled(e, joint);
+  if (e.reason == EndReason::kNotHeld) return not_held(e, joint);
   return following_error(e, joint);
+}
+
+std::string of_the_loop(const Ending& e) {
+  if (e.reason == EndReason::kBlind) return blind(e);
+  if (e.reason == EndReason::kFeedbackPoor) return feedback_poor(e);
+  return format("the control loop cannot keep its period: %.0f late cycles", e.value);
 }
 
 std::string why(const Ending& e, const Plan& plan, const Cell& cell,
@@ -266,11 +283,9 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kEnableTimeout:
       return format("the arm was not enabled within %.3g s", e.value);
     case EndReason::kBlind:
-      return blind(e);
     case EndReason::kOverruns:
-      return format("the control loop cannot keep its period: %.0f late cycles", e.value);
     case EndReason::kFeedbackPoor:
-      return feedback_poor(e);
+      return of_the_loop(e);
     case EndReason::kMeasured:
       return "all readings are taken";
     case EndReason::kNothingMet:
@@ -293,6 +308,7 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kFollowingError:
     case EndReason::kEncoderJump:
     case EndReason::kNotDisabled:
+    case EndReason::kNotHeld:
       return of_a_joint(e, cell, plan);
   }
   return "?";

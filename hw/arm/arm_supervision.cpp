@@ -57,6 +57,7 @@ void ArmSupervision::begin(std::int64_t now_ns) noexcept {
   refusals_ = 0;
   unsent_.fill(false);
   unsent_level_.fill(0.0);
+  was_enabled_ = false;
   enter_state(ArmState::kDisabled, now_ns);
 }
 
@@ -150,8 +151,8 @@ void ArmSupervision::take_emergency(const canopen::Emergency& emergency) noexcep
     fault_.code = emergency.code;
   } else if (drives_[joint].warns(emergency.code)) {
     warned_[joint] = emergency.code;
-  } else if (state_ != ArmState::kDisabled) {
-    // Drives that are off keep their fault until enabling resets it.
+  } else if (state_ != ArmState::kDisabled || was_enabled_) {
+    // Drives that have not been on yet keep an old fault until enabling resets it.
     raise({ArmFaultKind::kDriveFault, emergency.node, error_code, emergency.code});
   }
 }
@@ -285,6 +286,7 @@ void ArmSupervision::check_drives(ArmRequest request) noexcept {
 
 void ArmSupervision::enable(std::int64_t now_ns) noexcept {
   if (all_enabled()) {
+    was_enabled_ = true;
     enter_state(ArmState::kEnabled, now_ns);
     return;
   }

@@ -114,6 +114,7 @@ class ArmSupervision {
 
   ArmState state_ = ArmState::kUnconfigured;
   std::int64_t entered_ns_ = 0;
+  bool was_enabled_ = false;  ///< since begin()
   ArmFault fault_;
   bool cause_guessed_ = false;  ///< its code is one that the drive had warned of
   double force_stopped_N_ = 0.0;

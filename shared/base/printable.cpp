@@ -7,6 +7,14 @@
 namespace tenon {
 namespace {
 
+/// Separators of lines and paragraphs, and what turns the direction of writing: U+2028 to U+202E,
+/// and U+2066 to U+2069.
+bool rearranges(std::uint8_t first, std::uint8_t second, std::uint8_t third) {
+  if (first != 0xE2) return false;
+  return (second == 0x80 && third >= 0xA8 && third <= 0xAE) ||
+         (second == 0x81 && third >= 0xA6 && third <= 0xA9);
+}
+
 std::uint8_t byte_at(std::string_view text, std::size_t i) {
   return i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
 }
@@ -26,6 +34,7 @@ std::size_t character_at(std::string_view text, std::size_t i) {
     return 0;
   }
   if (!continues(byte_at(text, i + 2))) return 0;
+  if (rearranges(first, second, byte_at(text, i + 2))) return 0;
   if (first < 0xF0) return 3;
   return continues(byte_at(text, i + 3)) ? 4 : 0;
 }

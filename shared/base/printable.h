@@ -7,7 +7,8 @@
 
 namespace tenon {
 
-/// Control characters and what is not UTF-8 as \n, \t, \xHH: a terminal obeys none of it.
+/// Control characters, separators of lines, marks of writing direction and what is not UTF-8 as \n,
+/// \t, \xHH: a terminal obeys none of it, and a line stays one.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// At most about so many bytes, the middle left out: "1111... (99980 bytes) ...1111".

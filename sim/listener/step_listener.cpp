@@ -8,6 +8,7 @@
 #include "lcmtypes/tenon/cycle_state_t.hpp"
 #include "shared/base/error.h"
 #include "shared/system/lcm_url.h"
+#include "shared/system/whole_datagrams.h"
 
 namespace tenon::sim {
 namespace {
@@ -34,6 +35,7 @@ StepListener::StepListener(const std::string& url, std::function<void(int)> took
   lcm_ = std::make_unique<lcm::LCM>(url);
   if (!lcm_->good()) throw InputError("--lcm-url " + url + ": cannot be opened");
   lcm_->subscribeFunction(kCycleChannel, &take_step, &took_);
+  take_whole_datagrams_only();
 }
 
 StepListener::~StepListener() = default;

@@ -77,6 +77,18 @@ TEST(EditedPlan, OneWithAnotherGoalIsNotDone) {
   expect_not_at_goal(plan);
 }
 
+// Where the plan goes nowhere, its goal is where it starts.
+TEST(EditedPlan, OneWhoseGoalIsBesideItsCoordinatesIsNotDone) {
+  Plan raised = box_plan("1");
+  ASSERT_FALSE(has(raised.coordinates, 2));
+  raised.goal.position_m.z() += 0.048;
+  expect_not_at_goal(raised);
+  Plan turned = box_plan("1");
+  turned.goal.orientation =
+      turned.goal.orientation * Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Vector3::UnitZ()));
+  EXPECT_FALSE(executor::check_plan(turned, gantry_cell()).empty());
+}
+
 // What its steps may come to, nobody could say.
 TEST(EditedPlan, OneWithoutItsEnvelopesIsNotStarted) {
   Plan plan = box_plan("1");

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "executor/faults/fault_bounds.h"
 #include "executor/loop/controller.h"
 #include "executor/sensing/following_watch.h"
 #include "shared/config/files.h"
@@ -84,6 +85,7 @@ TEST(FaultTable, TheDetectorsHaveItsBounds) {
   EXPECT_EQ(seconds(EndReason::kBlind), parameters.supervision.blind_max_s);
   EXPECT_EQ(seconds(EndReason::kEnableTimeout), parameters.enable_timeout_s);
   EXPECT_EQ(seconds(EndReason::kBrakeFailed), parameters.brake_watch_s);
+  EXPECT_EQ(seconds(EndReason::kNotHeld), kHeldPatience_s);
   EXPECT_EQ(seconds(EndReason::kNotDisabled), parameters.disable_timeout_s);
   EXPECT_EQ(cycles(EndReason::kFeedbackMissing), parameters.supervision.feedback_misses_max + 2);
   EXPECT_EQ(bound_cycles(*fault_row(EndReason::kFollowingError), robot),

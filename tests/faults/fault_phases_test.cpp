@@ -95,6 +95,7 @@ TEST(FaultPhases, WhatStrikesADonePlanWhileItsPowerGoesIsNamed) {
     const std::pair<std::string, EndReason> faults[] = {
         {"encoder-jump:node=2,at=stopping," + jump, EndReason::kEncoderJump},
         {"emergency:node=3,at=stopping,code=0x3210", EndReason::kArmFault},
+        {"emergency:node=1,at=stopping,time_s=0.3,code=0x3210", EndReason::kArmFault},
         {"drop:node=1,at=stopping,id=answers,duration_s=100", EndReason::kArmFault},
         {"forged-force:at=stopping,force_N=80,duration_s=0.01", EndReason::kForceFault}};
     for (const auto& [spec, reason] : faults) {

@@ -158,6 +158,19 @@ class Test:
         self.check(terminal.end("\x03") == 0 and not terminal.restored(), "does not end in good order", terminal)
         terminal.close()
 
+    def outlives_fragments(self):
+        """LCM's library would write them anywhere."""
+        self.where = "fragments"
+        terminal = self.open(80, 30)
+        run = self.begin(terminal)
+        for begins_at in (0xFFFFFFFF, 0xFFFFFC00, 0xFFFFFF00, 0):
+            for channel in ("TENON_SETUP", "TENON_CYCLE", "TENON_STATUS"):
+                self.publisher.publish_fragment(channel, begins_at)
+        run.go_on(0.6, terminal.read)
+        self.live(terminal)
+        self.check(terminal.end("q") == 0, "does not end in good order", terminal)
+        terminal.close()
+
     def recorded(self):
         """The log is played by LCM's own player, and read by the monitor piped."""
         self.where = "recorded"
@@ -248,6 +261,7 @@ def main():
             test.all_of_one_size(columns, rows)
         test.resized()
         test.ended_by_signals()
+        test.outlives_fragments()
         test.recorded()
         test.ended_by_a_full_disk()
         test.without_colour()

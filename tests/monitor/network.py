@@ -38,3 +38,9 @@ class Publisher:
     def publish_bytes(self, channel, data):
         self.socket.sendto(b"LC02" + struct.pack(">I", self.sent) + channel.encode() + b"\0" + data, GROUP)
         self.sent += 1
+
+    def publish_fragment(self, channel, begins_at):
+        """The first of a message of several datagrams (LC03), which says that it begins there."""
+        head = struct.pack(">4sIIIHH", b"LC03", self.sent, 2000, begins_at, 0, 1)
+        self.socket.sendto(head + channel.encode() + b"\0" + 1400 * b"x", GROUP)
+        self.sent += 1

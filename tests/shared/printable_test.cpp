@@ -22,6 +22,12 @@ TEST(Printable, LeavesTextAndEscapesWhatATerminalObeys) {
   EXPECT_EQ(printable(std::string("\0", 1)), "\\x00");
   EXPECT_EQ(printable("\xC2\x9B"), "\\xC2\\x9B");  // 8-bit control
   EXPECT_EQ(printable("\xC0\xAF \xED\xA0\x80 \xF5"), "\\xC0\\xAF \\xED\\xA0\\x80 \\xF5");
+  EXPECT_EQ(printable("a\xE2\x80\xA8"
+                      "b\xE2\x80\xAE"
+                      "c\xE2\x80\xA6"),
+            "a\\xE2\\x80\\xA8"
+            "b\\xE2\\x80\\xAE"
+            "c\xE2\x80\xA6");
   EXPECT_EQ(printable("cut \xE5\x8A"), "cut \\xE5\\x8A");
 }
 

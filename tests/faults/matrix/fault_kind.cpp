@@ -21,7 +21,7 @@ const executor::FaultRow* arm(ArmFaultKind kind) { return fault_row(EndReason::k
 /// come to without it.
 Names stays_behind() {
   return {fault_row(EndReason::kFollowingError), fault_row(EndReason::kForceFault),
-          fault_row(EndReason::kPlanFailed)};
+          fault_row(EndReason::kPlanFailed), fault_row(EndReason::kNotHeld)};
 }
 
 /// A zero that drifts is named for it while it is found; later for what the plan makes of a force
