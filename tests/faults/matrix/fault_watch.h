@@ -85,7 +85,8 @@ class FaultWatch final : public executor::CycleSink {
     if (reason == kForceFault) return forged ? struck_ : pressed_;
     const bool of_wrench = reason == kTorqueFault || reason == kSensorSaturated ||
                            row.arm_fault == ArmFaultKind::kSensorInvalid;
-    const bool inside = reason == kJointLimit || reason == kPlanFailed || reason == kTareMoving;
+    const bool inside = reason == kJointLimit || reason == kPlanFailed || reason == kTareMoving ||
+                        reason == kNotHeld;
     return inside || (of_wrench && !of_sensor_) ? std::nullopt : struck_;
   }
   [[nodiscard]] std::optional<std::int64_t> named() const { return named_; }
