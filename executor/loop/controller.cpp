@@ -254,8 +254,11 @@ std::optional<Ending> Controller::seen_in_brakes() {
 // A plan that ends in free air is done only if it is free air: a zero that has moved meanwhile has
 // shifted whatever was met on the way. In a contact nobody can tell.
 ControlTask::Turn Controller::hold() {
-  if (ending().reason == EndReason::kPlanDone) {
-    if (const auto off = watch_hold()) return *off;
+  if (ending().reason == EndReason::kPlanDone && !unheld_told_) {
+    if (const auto off = watch_hold()) {
+      unheld_told_ = true;
+      return *off;
+    }
   }
   const bool free = ending().reason == EndReason::kPlanDone && runner_.signature().bits == 0;
   if (!free || zero_told_ || time_in_state_s() >= kZeroWatch_s) return held();

@@ -104,7 +104,8 @@ class Controller : public ControlTask {
   StopProfile stop_;
   ZeroWatch zero_watch_;  ///< at the plan's end
   bool zero_told_ = false;
-  int unheld_cycles_ = 0;   ///< in a row, at the plan's end
+  int unheld_cycles_ = 0;  ///< in a row, at the plan's end
+  bool unheld_told_ = false;
   bool tool_left_ = false;  ///< the joints ramp down or hold by themselves
   Pose commanded_;          ///< tool pose behind the commanded joints
 };

@@ -218,10 +218,8 @@ std::string too_hard(const Ending& e, const Cell& cell) {
 std::string not_held(const Ending& e, const Joint& joint) {
   return format(
       "the plan came to its end, but node %d (%s) is %.3g %s from where it was told to hold it, "
-      "and "
-      "the tool further than %.3g mm or turned: its drive does not follow, or its brake slips; "
-      "look "
-      "where the part is",
+      "and the tool further off than %.3g mm, or turned: its drive does not follow, or its brake "
+      "slips; look where the part is",
       static_cast<int>(joint.node), joint.name.c_str(), e.value, joint_unit(joint), 1e3 * e.bound);
 }
 

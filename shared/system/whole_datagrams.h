@@ -7,7 +7,7 @@ namespace tenon {
 
 /// From now on the UDP sockets that this process has open take messages of one datagram (LC02)
 /// alone, up to 64 kB; those of Tenon have at most a few. After subscribing: LCM's library opens
-/// its receiving socket then.
+/// its receiving socket then, and by mpudpm:// more of them later, which this does not reach.
 void take_whole_datagrams_only();
 
 }  // namespace tenon
