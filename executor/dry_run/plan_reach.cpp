@@ -114,11 +114,14 @@ std::optional<GoalGap> goal_gap(const Plan& plan, const ReachBox& reach, const P
   std::optional<GoalGap> worst;
   double worst_excess = 0.0;
   for (int axis = 0; axis < 6; ++axis) {
+    if (has(plan.goal_axes.free, axis)) continue;
     // Beside its coordinates the plan goes nowhere; a file's floats turn by a little.
     constexpr double kTurnedLeast_rad = 1e-3;
     const bool searched = has(plan.coordinates, axis);
     const double turned_rad = searched ? slack_rad : std::max(slack_rad, kTurnedLeast_rad);
-    const double slack = axis < 3 ? slack_m + plan.goal_tolerance_m : turned_rad;
+    const double own = plan.goal_axes.tolerance[axis];
+    const double goal_m = own > 0.0 ? own : plan.goal_tolerance_m;
+    const double slack = axis < 3 ? slack_m + goal_m : turned_rad + own;
     const auto beyond = [&](double at) {
       return std::max(reach.low[axis] - slack - at, at - reach.high[axis] - slack);
     };

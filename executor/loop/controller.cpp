@@ -224,23 +224,32 @@ ControlTask::Turn Controller::ramp_down() {
 }
 
 // A plan that is done has brought the tool where it was told. How far a joint may stay behind in
-// motion is its drive's to say, and may be more than the goal allows. Empty for a plan without
-// goal.
-std::optional<Ending> Controller::off_command(double bound_m) const {
-  if (bound_m <= 0.0) return std::nullopt;
+// motion is its drive's to say, and may be more than the goal allows: here, by no more than that
+// share of its tolerances. Empty for a plan without goal.
+std::optional<Ending> Controller::off_command(double share) const {
+  if (plan_.goal_tolerance_m <= 0.0) return std::nullopt;
+  // Any end may do along an axis, but a tool that leaves its command is not held.
+  GoalAxes axes = plan_.goal_axes;
+  axes.free = 0;
   const Pose told = kinematics().tool(joints().position());
   const Vector6 off = displacement_between(told, supervision().tool());
-  const bool far =
-      off.head<3>().norm() > bound_m || off.tail<3>().norm() > parameters_.start_tolerance_rad;
+  const bool far = tolerances_off(off, plan_.goal_tolerance_m, axes, 0.0) > share ||
+                   off.tail<3>().norm() > parameters_.start_tolerance_rad;
   if (!far) return std::nullopt;
+  double narrowest_m = plan_.goal_tolerance_m;
+  for (const double own_m : axes.tolerance.head<3>()) {
+    if (own_m > 0.0) narrowest_m = std::min(narrowest_m, own_m);
+  }
   const JointDifference worst = largest_difference(supervision().joints(), joints().position());
-  return Ending{
-      .reason = EndReason::kNotHeld, .index = worst.joint, .value = worst.value, .bound = bound_m};
+  return Ending{.reason = EndReason::kNotHeld,
+                .index = worst.joint,
+                .value = worst.value,
+                .bound = share * narrowest_m};
 }
 
 // The half of the goal's tolerance that plans leave to their arms.
 std::optional<Ending> Controller::watch_hold() {
-  const auto off = off_command(0.5 * plan_.goal_tolerance_m);
+  const auto off = off_command(0.5);
   unheld_cycles_ = off ? unheld_cycles_ + 1 : 0;
   return unheld_cycles_ * cycle_s() > kHeldPatience_s ? off : std::nullopt;
 }
@@ -248,7 +257,7 @@ std::optional<Ending> Controller::watch_hold() {
 // A brake lets its joint go a little before it holds.
 std::optional<Ending> Controller::seen_in_brakes() {
   if (ending().reason != EndReason::kPlanDone) return std::nullopt;
-  return off_command(plan_.goal_tolerance_m);
+  return off_command(1.0);
 }
 
 // A plan that ends in free air is done only if it is free air: a zero that has moved meanwhile has

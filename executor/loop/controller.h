@@ -78,7 +78,7 @@ class Controller : public ControlTask {
   }
   [[nodiscard]] std::optional<Ending> off_start() const;
   [[nodiscard]] Ending done() const;
-  [[nodiscard]] std::optional<Ending> off_command(double bound_m) const;
+  [[nodiscard]] std::optional<Ending> off_command(double share) const;
   [[nodiscard]] std::optional<Ending> watch_hold();
   [[nodiscard]] double on_threshold(int axis) const;
   [[nodiscard]] int touching_axis(std::uint8_t axes) const;

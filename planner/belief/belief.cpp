@@ -33,7 +33,17 @@ std::int64_t cell(double value, double size) {
 
 }  // namespace
 
-Metric metric_of(const Task& task) { return {task.orientation_weight}; }
+Metric metric_of(const Task& task) {
+  Metric metric{task.orientation_weight};
+  for (int axis = 0; axis < 6; ++axis) {
+    if (task.goal_axes.together(axis)) continue;
+    metric.own |= static_cast<CoordinateMask>(1U << axis);
+    if (has(task.goal_axes.free, axis)) continue;
+    const double ratio = task.goal_tolerance_m / task.goal_axes.tolerance[axis];
+    metric.own_variance[axis] = ratio * ratio;
+  }
+  return metric;
+}
 
 Particle particle_off(const Vector6& off, const Task& task, const Start& start,
                       const PhysicalParameters& physics) {
@@ -101,13 +111,21 @@ double uncertainty(const Belief& belief, const Metric& metric) {
   const Pose mean = mean_pose(belief);
   double position_m2 = 0.0;
   double orientation_rad2 = 0.0;
+  Vector6 own = Vector6::Zero();
   for (const Particle& particle : belief.particles) {
-    const Vector6 off = displacement_between(mean, particle.tool());
+    Vector6 off = displacement_between(mean, particle.tool());
+    for (int axis = 0; axis < 6; ++axis) {
+      if (!has(metric.own, axis)) continue;
+      own[axis] += off[axis] * off[axis];
+      off[axis] = 0.0;
+    }
     position_m2 += off.head<3>().squaredNorm();
     orientation_rad2 += off.tail<3>().squaredNorm();
   }
   const auto count = static_cast<double>(belief.particles.size());
-  return (position_m2 + metric.orientation_weight * orientation_rad2) / count;
+  return (position_m2 + metric.orientation_weight * orientation_rad2 +
+          own.dot(metric.own_variance)) /
+         count;
 }
 
 double distance(const Pose& a, const Pose& b, const Metric& metric) {
@@ -131,9 +149,15 @@ void append_cell(const Particle& particle, double cell_m, double cell_rad,
 
 Grid grid_of(const Task& task) {
   const Grid coarsest;
-  const double finest_m = kCellOfTolerance * task.goal_tolerance_m;
-  return {std::min(coarsest.cell_m, finest_m),
-          std::min(coarsest.cell_rad, finest_m / metric_of(task).orientation_weight)};
+  double finest_m = task.goal_tolerance_m;
+  double finest_rad = finest_m / task.orientation_weight;
+  for (int axis = 0; axis < 6; ++axis) {
+    const double own = task.goal_axes.tolerance[axis];
+    double& finest = axis < 3 ? finest_m : finest_rad;
+    if (own > 0.0) finest = std::min(finest, own);
+  }
+  return {std::min(coarsest.cell_m, kCellOfTolerance * finest_m),
+          std::min(coarsest.cell_rad, kCellOfTolerance * finest_rad)};
 }
 
 BeliefKey identity(const Belief& belief, const Grid& grid) {

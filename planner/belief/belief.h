@@ -22,9 +22,18 @@ struct Belief {
 };
 
 /// What an angle weighs beside a way, the same in distances and in uncertainties. Ways weigh 1, so
-/// that tolerances are metres.
+/// that tolerances are metres. Where the goal has axes of its own, their variances weigh as their
+/// tolerances do, and those of free axes nothing.
 struct Metric {
-  double orientation_weight = 0.1;  ///< m per rad
+  double orientation_weight = 0.1;         ///< m per rad
+  Vector6 own_variance = Vector6::Zero();  ///< m^2 per m^2 or rad^2, of axes of their own
+  CoordinateMask own = 0;                  ///< which these are
+
+  /// Of an axis's variance, m^2 per m^2 or rad^2.
+  [[nodiscard]] double variance_weight(int axis) const {
+    if (has(own, axis)) return own_variance[axis];
+    return axis < 3 ? 1.0 : orientation_weight;
+  }
 };
 
 [[nodiscard]] Metric metric_of(const Task& task);
@@ -64,7 +73,7 @@ struct Metric {
 [[nodiscard]] Pose mean_pose(const Belief& belief);
 
 /// u = Tr Cov(position) + w_o Tr Cov(orientation), population covariances, the orientation as
-/// rotation vectors about the mean (m^2).
+/// rotation vectors about the mean (m^2). Axes of their own weigh as the metric says.
 [[nodiscard]] double uncertainty(const Belief& belief, const Metric& metric);
 
 /// |position difference| + w_o (angle between), m. A metric.
@@ -77,7 +86,7 @@ struct Grid {
 };
 
 /// 0.1 mm and 0.02 degrees (a clearance is a few of them), and at most a tenth of the goal's
-/// tolerance: one state's particles are as far from the goal as each other, but for that.
+/// narrowest tolerance: one state's particles are as far from the goal as each other, but for that.
 [[nodiscard]] Grid grid_of(const Task& task);
 
 /// Two beliefs with equal keys are one state of the search: every particle in the same cell and

@@ -21,6 +21,7 @@ BeliefSummary summarise(const Belief& belief, const Task& task) {
     const Vector6 off = displacement_between(summary.mean, tool);
     summary.spread = summary.spread.cwiseMax(off.cwiseAbs());
     summary.farthest_m = std::max(summary.farthest_m, distance(tool, task.goal, metric));
+    summary.farthest = std::max(summary.farthest, tolerances_from_goal(task, tool));
     summary.inserted = summary.inserted && inserted(task, tool);
   }
   return summary;
@@ -36,9 +37,8 @@ double edge_cost(const BeliefSummary& from, const BeliefSummary& to, const Task&
 }
 
 bool at_goal(const BeliefSummary& belief, const Task& task) {
-  const double within_m = kOfTolerance * task.goal_tolerance_m;
-  return belief.farthest_m <= within_m &&
-         distance(belief.mean, task.goal, metric_of(task)) <= within_m &&
+  return belief.farthest <= kOfTolerance &&
+         tolerances_from_goal(task, belief.mean) <= kOfTolerance &&
          belief.uncertainty_m2 <= task.goal_uncertainty_m2 && belief.inserted;
 }
 

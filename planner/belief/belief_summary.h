@@ -12,6 +12,7 @@ struct BeliefSummary {
   Pose mean;
   double uncertainty_m2 = 0.0;
   double farthest_m = 0.0;           ///< distance to the goal of the particle farthest from it
+  double farthest = 0.0;             ///< the same in the goal's tolerances
   Vector6 spread = Vector6::Zero();  ///< by axis, of the particle farthest from the mean, m or rad
   bool inserted = true;              ///< every particle is where the task wants it inserted
 };
@@ -25,7 +26,7 @@ struct BeliefSummary {
 [[nodiscard]] double edge_cost(const BeliefSummary& from, const BeliefSummary& to,
                                const Task& task);
 
-/// d(mean, goal) <= d_tol / 2, u <= u_tol, and every particle by itself within d_tol / 2 and
+/// The mean and every particle by itself within half of the goal's tolerances, u <= u_tol, and all
 /// inserted: the other half is the arm's.
 [[nodiscard]] bool at_goal(const BeliefSummary& belief, const Task& task);
 

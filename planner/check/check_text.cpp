@@ -73,8 +73,8 @@ std::string check_text(const std::string& file, const Task& task, const TaskChec
   text += "task      " + task.name + ", along " + axis_list(task.coordinates) + "\n";
   text += "held      " + shapes_text(task.held) + " in the tool frame\n";
   text += "around    " + shapes_text(task.environment) + "\n";
-  text += "goal      " + mm(task.goal.position_m) +
-          format(", to within %.3g", 1e3 * task.goal_tolerance_m) +
+  text += "goal      " + mm(task.goal.position_m) + ", to within " +
+          tolerance_text(task.goal_tolerance_m, task.goal_axes) +
           (task.inserted ? ", inserted" : "") + "\n";
   for (const GoalRoom& room : check.goal_room) {
     text += format("          room along %s: -%s, +%s\n", axis_name(room.axis),

@@ -161,7 +161,10 @@ class Checker {
 
   void untouched(const Start& start, const std::vector<Touch>& touches) {
     for (int axis = 0; axis < 3; ++axis) {
-      const bool uncertain = task_.particle_sigmas * start.sigma[axis] > task_.goal_tolerance_m;
+      const double own_m = task_.goal_axes.tolerance[axis];
+      const double allowed_m = own_m > 0.0 ? own_m : task_.goal_tolerance_m;
+      const bool uncertain =
+          task_.particle_sigmas * start.sigma[axis] > allowed_m && !has(task_.goal_axes.free, axis);
       const bool touched = std::any_of(touches.begin(), touches.end(),
                                        [axis](const Touch& touch) { return touch.axis == axis; });
       if (!has(task_.coordinates, axis) || !uncertain || touched) continue;

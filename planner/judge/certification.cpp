@@ -45,8 +45,7 @@ std::string difference(const GuardedMove::Result& move, const GuardedMove::Resul
 /// Which chain ends farthest from the goal, those that are not inserted before all others.
 std::size_t farthest(const std::vector<Chain>& chains, const Task& task) {
   const auto off = [&](const Chain& chain) {
-    return std::pair(!inserted(task, chain.end()),
-                     distance(chain.end(), task.goal, metric_of(task)));
+    return std::pair(!inserted(task, chain.end()), tolerances_from_goal(task, chain.end()));
   };
   const auto worst = std::max_element(chains.begin(), chains.end(),
                                       [&](auto& a, auto& b) { return off(a) < off(b); });
@@ -176,7 +175,8 @@ void check_same_task(const Plan& plan, const Task& task) {
                      "': plan again, or give the --cell that it was made for");
   };
   demand(plan.goal == drafted.goal, "goal");
-  demand(plan.goal_tolerance_m == drafted.goal_tolerance_m, "goal tolerance");
+  demand(plan.goal_tolerance_m == drafted.goal_tolerance_m && plan.goal_axes == drafted.goal_axes,
+         "goal tolerance");
   demand(plan.compliance == drafted.compliance, "compliance");
   demand(plan.force_limit_N == drafted.force_limit_N, "force limit");
   demand(plan.torque_limit_Nm == drafted.torque_limit_Nm, "torque limit");

@@ -4,6 +4,7 @@
 
 #include "planner/belief/primitives.h"
 #include "planner/judge/plan_draft.h"
+#include "shared/task/inserted.h"
 
 namespace tenon::planner {
 namespace {
@@ -27,7 +28,7 @@ Vector6 off_centre(std::span<const Chain> chains, const Task& task) {
   }
   Vector6 off = 0.5 * (low + high);
   for (int axis = 0; axis < 6; ++axis) {
-    if (!has(task.coordinates, axis)) off[axis] = 0.0;
+    if (!has(task.coordinates, axis) || has(task.goal_axes.free, axis)) off[axis] = 0.0;
   }
   return off;
 }
@@ -39,8 +40,8 @@ std::optional<Plan> with_last_move_centred(const Plan& plan, std::span<const Cha
   const auto free = [&](const Chain& chain) { return ends_free(plan, chain); };
   if (chains.empty() || !std::all_of(chains.begin(), chains.end(), free)) return std::nullopt;
   const Vector6 off = off_centre(chains, task);
-  const double off_m = distance(displaced(task.goal, off), task.goal, metric_of(task));
-  if (off_m < kWorthOfTolerance * task.goal_tolerance_m) return std::nullopt;
+  if (tolerances_from_goal(task, displaced(task.goal, off)) < kWorthOfTolerance)
+    return std::nullopt;
   Plan centred = plan;
   Step& last = centred.steps.back();
   const double before_m = last.displacement.head<3>().norm();

@@ -37,6 +37,7 @@ Plan draft_plan(const Task& task, const Start& start, const CellAssumptions& ass
   plan.start = start.pose;
   plan.goal = task.goal;
   plan.goal_tolerance_m = task.goal_tolerance_m;
+  plan.goal_axes = task.goal_axes;
   plan.compliance = task.compliance;
   plan.force_limit_N = task.force_limit_N;
   plan.torque_limit_Nm = task.torque_limit_Nm;

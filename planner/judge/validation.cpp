@@ -13,8 +13,7 @@ namespace tenon::planner {
 namespace {
 
 bool ends_at_goal(const Chain& chain, const Task& task) {
-  return chain.done && inserted(task, chain.end()) &&
-         distance(chain.end(), task.goal, metric_of(task)) <= task.goal_tolerance_m;
+  return chain.done && inserted(task, chain.end()) && within_tolerance(task, chain.end());
 }
 
 }  // namespace

@@ -128,9 +128,8 @@ std::string start_text(const NewTask& task, const Numbers& n) {
       pose_text({{0.0, 0.0, n.start_z_m}, {1.0, 0.0, 0.0, 0.0}}).c_str(), task.uniform_m,
       task.uniform_m, task.uniform_m);
   if (turns) {
-    text += format(task.fit.yaw_matters ? "    uniform_rad: [%.6g, %.6g, %.6g]\n"
-                                        : "    uniform_rad: [%.6g, %.6g]\n",
-                   task.uniform_rad, task.uniform_rad, task.uniform_rad);
+    text += format("    uniform_rad: [%.6g, %.6g, %.6g]\n", task.uniform_rad, task.uniform_rad,
+                   task.uniform_rad);
   }
   return text;
 }
@@ -138,13 +137,19 @@ std::string start_text(const NewTask& task, const Numbers& n) {
 std::string goal_text(const NewTask& task, const Numbers& n) {
   const double aside_m =
       2.0 * n.tolerance_m + *std::max_element(task.fit.play_m.begin(), task.fit.play_m.end());
+  const bool free = task.uniform_rad > 0.0 && !task.fit.yaw_matters;
   return format(
-      "\n# Clear of the bottom by %.3g mm.\ngoal:\n  pose: {position_m: [0, 0, %.6g]}\n"
-      "  tolerance_m: %.6g\n  # The tip is as deep as assembled, within the tolerance.\n"
-      "  inserted: {box_m: [%.6g, %.6g, %.6g], pose: {position_m: [0, 0, %.6g]}}\n",
-      1e3 * n.goal_z_m, n.goal_z_m, n.tolerance_m, aside_m, aside_m, 2.0 * n.tolerance_m,
-      n.goal_z_m);
+             "\n# Clear of the bottom by %.3g mm.\ngoal:\n  pose: {position_m: [0, 0, %.6g]}\n"
+             "  tolerance_m: %.6g\n",
+             1e3 * n.goal_z_m, n.goal_z_m, n.tolerance_m) +
+         (free ? "  # However it is turned about its way, it goes in.\n  free: [rz]\n" : "") +
+         format(
+             "  # The tip is as deep as assembled, within the tolerance.\n"
+             "  inserted: {box_m: [%.6g, %.6g, %.6g], pose: {position_m: [0, 0, %.6g]}}\n",
+             aside_m, aside_m, 2.0 * n.tolerance_m, n.goal_z_m);
 }
+
+constexpr const char* kRotations = ", rx, ry, rz";
 
 constexpr const char* kMotion = R"(
 # tenon-plan --cell lowers the speeds to what the cell's arm can stop from.
@@ -172,9 +177,9 @@ search:
   time_limit_s: 300
 )";
 
-std::string compliance_text(const NewTask& task, bool turns) {
+std::string compliance_text(bool turns) {
   std::string text = "\n# How the arm yields.\ncompliance:\n  axes: [x, y, z";
-  if (turns) text += task.fit.yaw_matters ? ", rx, ry, rz" : ", rx, ry";
+  if (turns) text += kRotations;
   text += "]\n  mass_kg: 2.0\n  damping_Nspm: 1500.0\n  stiffness_Npm: 1000.0\n";
   if (turns) text += "  inertia_kgm2: 0.02\n  damping_Nmspr: 1.0\n  stiffness_Nmpr: 5.0\n";
   return text;
@@ -201,11 +206,10 @@ std::string findings(const NewTask& task) {
 std::string task_text(const NewTask& task) {
   const Numbers n = numbers_of(task);
   const bool turns = task.uniform_rad > 0.0;
-  const char* rotations = task.fit.yaw_matters ? ", rx, ry, rz" : ", rx, ry";
   return "# Written by tenon-plan --new-task from two parts. Measured:\n#\n" +
          commented(findings(task)) + "\nname: " + task.name + "\ncoordinates: [x, y, z" +
-         (turns ? rotations : "") + "]\n\n" + shapes_text(task, n) + start_text(task, n) +
-         goal_text(task, n) + kMotion + compliance_text(task, turns) + kPhysics;
+         (turns ? kRotations : "") + "]\n\n" + shapes_text(task, n) + start_text(task, n) +
+         goal_text(task, n) + kMotion + compliance_text(turns) + kPhysics;
 }
 
 }  // namespace tenon::planner

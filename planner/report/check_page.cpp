@@ -134,9 +134,8 @@ std::string understood(const Task& task, const TaskCheck& check) {
     room += row({axis_name(way.axis), room_text(way.down_m), room_text(way.up_m)});
   }
   return "<section><h2>Room at the goal</h2>\n<p>How far the part can go from " +
-         mm(task.goal.position_m) +
-         format(" mm until it touches; the goal's tolerance is %.3g mm.</p>\n",
-                1e3 * task.goal_tolerance_m) +
+         mm(task.goal.position_m) + " mm until it touches; the goal's tolerance is " +
+         tolerance_text(task.goal_tolerance_m, task.goal_axes) + ".</p>\n" +
          titled_table({"Along", "towards -", "towards +"}, room) +
          "</section>\n<section><h2>Parts</h2>\n" +
          titled_table({"Name", "Size (mm)", "Middle (mm)", ""}, parts) + "</section>\n";

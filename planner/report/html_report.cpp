@@ -21,18 +21,18 @@ namespace {
 
 std::string verdict(const ReportData& data) {
   const Plan& plan = data.plan;
+  const std::string allowed = tolerance_text(plan.goal_tolerance_m, plan.goal_axes);
   std::string text = "<p class='lead'>";
   if (data.is_baseline()) {
     text += format(
         "%zu steps by the baseline <b>%s</b>, which plans for the nominal start alone. It ends "
-        "there within %.1f mm of the goal. ",
-        plan.steps.size(), to_string(plan.method), 1e3 * plan.goal_tolerance_m);
+        "there within %s of the goal. ",
+        plan.steps.size(), to_string(plan.method), allowed.c_str());
   } else {
     text += format("%zu guarded moves bring the tool from an uncertainty of ", plan.steps.size()) +
             spread_text(plan, data.nodes.front().spread) + " to " +
             spread_text(plan, data.nodes.back().spread) +
-            format(" (standard deviations of the particles), within %.1f mm of the goal.",
-                   1e3 * plan.goal_tolerance_m);
+            " (standard deviations of the particles), within " + allowed + " of the goal.";
   }
   return text + "</p>\n";
 }

@@ -80,10 +80,10 @@ std::string header_text(const Plan& plan, std::size_t bytes) {
   text += format("%zu bytes, %zu steps, %zu parameter set%s, coordinates %s\n", bytes,
                  plan.steps.size(), plan.parameter_sets.size(),
                  plan.parameter_sets.size() == 1 ? "" : "s", axis_list(plan.coordinates).c_str());
-  text += format("start (%.4f, %.4f, %.4f) m, goal (%.4f, %.4f, %.4f) m within %.1f mm\n",
+  text += format("start (%.4f, %.4f, %.4f) m, goal (%.4f, %.4f, %.4f) m within ",
                  plan.start.position_m.x(), plan.start.position_m.y(), plan.start.position_m.z(),
-                 plan.goal.position_m.x(), plan.goal.position_m.y(), plan.goal.position_m.z(),
-                 1e3 * plan.goal_tolerance_m);
+                 plan.goal.position_m.x(), plan.goal.position_m.y(), plan.goal.position_m.z()) +
+          tolerance_text(plan.goal_tolerance_m, plan.goal_axes) + "\n";
   text += format("compliance M %g kg, D %g Ns/m, K %g N/m on %s; force limit %g N\n", c.mass_kg,
                  c.damping_Nspm, c.stiffness_Npm, axis_list(c.compliant_axes).c_str(),
                  plan.force_limit_N);
@@ -106,6 +106,10 @@ std::string plan_json(const Plan& plan, std::size_t bytes) {
   json["start"] = json_of(plan.start);
   json["goal"] = json_of(plan.goal);
   json["goal_tolerance_m"] = plan.goal_tolerance_m;
+  if (plan.goal_axes.any()) {
+    json["goal_axis_tolerances"] = json_of(plan.goal_axes.tolerance);
+    json["goal_free_axes"] = axis_list(plan.goal_axes.free);
+  }
   json["compliance"] = {{"mass_kg", c.mass_kg},
                         {"damping_Nspm", c.damping_Nspm},
                         {"stiffness_Npm", c.stiffness_Npm},

@@ -88,7 +88,7 @@ class GuideSearch {
       const bool known = std::any_of(found_.begin(), found_.end(), [axis](const Guide& guide) {
         return contains(guide.contacts, axis);
       });
-      if (seed_.spread[axis] > 0.0 && !known) mask |= static_cast<CoordinateMask>(1U << axis);
+      if (is_open(axis) && !known) mask |= static_cast<CoordinateMask>(1U << axis);
     }
     return mask;
   }
@@ -185,7 +185,7 @@ class GuideSearch {
                const std::vector<ContactAttractor>& before) {
     bool last = true;
     for (int axis = 0; axis < 6; ++axis) {
-      if (seed_.spread[axis] <= 0.0 || contains(before, axis)) continue;
+      if (!is_open(axis) || contains(before, axis)) continue;
       for (ContactAttractor contact : known[static_cast<std::size_t>(axis)]) {
         if (!all_settled(contact.after, before)) continue;
         const double left_m2 = weight_of(axis) * contact.spread * contact.spread;
@@ -202,7 +202,7 @@ class GuideSearch {
   [[nodiscard]] bool all_settled(CoordinateMask axes,
                                  const std::vector<ContactAttractor>& by) const {
     for (int axis = 0; axis < 6; ++axis) {
-      if (has(axes, axis) && seed_.spread[axis] > 0.0 && !contains(by, axis)) return false;
+      if (has(axes, axis) && is_open(axis) && !contains(by, axis)) return false;
     }
     return true;
   }
@@ -217,8 +217,11 @@ class GuideSearch {
     return weight_of(axis) * sum / static_cast<double>(start_.particles.size());
   }
 
-  [[nodiscard]] double weight_of(int axis) const {
-    return axis < 3 ? 1.0 : task_.orientation_weight;
+  [[nodiscard]] double weight_of(int axis) const { return metric_of(task_).variance_weight(axis); }
+
+  /// Uncertain, and not free at the goal.
+  [[nodiscard]] bool is_open(int axis) const {
+    return seed_.spread[axis] > 0.0 && !has(task_.goal_axes.free, axis);
   }
 
   const Task& task_;

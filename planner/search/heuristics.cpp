@@ -54,11 +54,23 @@ double cost_of_contacts(const BeliefSummary& belief, const Guide& guide, const T
   return cost;
 }
 
+/// How far it is to where the goal's axes of their own are satisfied and the others are at it.
+/// Taken axis by axis, rotation vectors are no metric: where one of them differs, no rotation
+/// counts.
+double beyond_own_m(const Pose& from, const Task& task) {
+  const GoalAxes& axes = task.goal_axes;
+  if (!axes.any()) return distance(from, task.goal, metric_of(task));
+  Vector6 off = beyond_own(displacement_between(task.goal, from), axes);
+  const bool turned_together = axes.together(3) && axes.together(4) && axes.together(5);
+  if (!turned_together) off.tail<3>().setZero();
+  return off.head<3>().norm() + task.orientation_weight * off.tail<3>().norm();
+}
+
 }  // namespace
 
 double anchor_heuristic(const BeliefSummary& belief, const Task& task) {
   if (at_goal(belief, task)) return 0.0;
-  const double away_m = distance(belief.mean, task.goal, metric_of(task)) - task.goal_tolerance_m;
+  const double away_m = beyond_own_m(belief.mean, task) - task.goal_tolerance_m;
   return task.distance_weight_per_m * std::max(0.0, away_m) +
          move_cost(task, belief.uncertainty_m2);
 }

@@ -54,11 +54,13 @@ TouchTurns::TouchTurns(const Task& task, const Belief& start, const Pose& clear,
       succ_(succ),
       rollout_(rollout),
       stop_(stop) {
-  int coordinates = 0;
-  for (int axis = 0; axis < 6; ++axis) coordinates += has(task.coordinates, axis) ? 1 : 0;
+  const int coordinates =
+      std::popcount(static_cast<CoordinateMask>(task.coordinates & ~task.goal_axes.free));
   const double enough_m = std::sqrt(task.goal_uncertainty_m2 / std::max(1, coordinates));
-  enough_.head<3>().setConstant(enough_m);
-  enough_.tail<3>().setConstant(enough_m / std::sqrt(task.orientation_weight));
+  const Metric metric = metric_of(task);
+  // Without bound along free axes.
+  for (int axis = 0; axis < 6; ++axis)
+    enough_[axis] = enough_m / std::sqrt(metric.variance_weight(axis));
 }
 
 /// Along each axis about the mean.

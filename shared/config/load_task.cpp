@@ -126,10 +126,39 @@ Start read_start(const Value& value, const Task& task, std::set<std::string>& na
   return start;
 }
 
+/// `tolerances: {z_m: 0.005, ry_rad: 0.02}` and `free: [rz]`.
+GoalAxes read_goal_axes(const Map& goal, CoordinateMask coordinates) {
+  GoalAxes axes;
+  const auto demand_coordinate = [&](const Value& value, int axis) {
+    if (has(coordinates, axis)) return;
+    value.refuse(std::string("names ") + axis_name(axis) + ", which is not a search coordinate");
+  };
+  if (const auto own = goal.find("tolerances")) {
+    const Map map(*own, {"x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"});
+    for (int axis = 0; axis < 6; ++axis) {
+      const auto given = map.find(axis_key(axis));
+      if (!given) continue;
+      demand_coordinate(*given, axis);
+      axes.tolerance[axis] = given->number(positive_to(axis < 3 ? 1.0 : std::numbers::pi));
+    }
+  }
+  if (const auto free = goal.find("free")) {
+    axes.free = read_axes(*free);
+    for (int axis = 0; axis < 6; ++axis) {
+      if (!has(axes.free, axis)) continue;
+      demand_coordinate(*free, axis);
+      if (axes.tolerance[axis] == 0.0) continue;
+      free->refuse(std::string("names ") + axis_name(axis) + ", which has a tolerance");
+    }
+  }
+  return axes;
+}
+
 void read_goal(const Value& value, Task& task) {
-  const Map map(value, {"pose", "tolerance_m", "uncertainty_m2", "inserted"});
+  const Map map(value, {"pose", "tolerance_m", "tolerances", "free", "uncertainty_m2", "inserted"});
   task.goal = map.at("pose").pose();
   task.goal_tolerance_m = map.number("tolerance_m", positive_to(1.0));
+  task.goal_axes = read_goal_axes(map, task.coordinates);
   task.goal_uncertainty_m2 = 0.0;  // where it is not said
   map.optional_number("uncertainty_m2", positive_to(1.0), task.goal_uncertainty_m2);
 

@@ -19,6 +19,7 @@ constexpr Limits kUnit = {-1.0, 1.0};
 constexpr Limits kTravel = {-10.0, 10.0};  // m or rad
 constexpr Limits kSlowFrom = {0.0, 10.0};
 constexpr Limits kTolerance_m = {0.0, 10.0, true};
+constexpr Limits kAxisTolerance = {0.0, 10.0};  // m or rad
 constexpr Limits kLatency_s = {0.0, 1.0};
 constexpr Limits kInertia = {0.0, 1e4, true};
 constexpr Limits kSpring = {0.0, 1e7, true};  // dampers too
@@ -149,7 +150,7 @@ DecodedPlan check_frame(std::span<const std::uint8_t> bytes) {
   }
   if (load_le<std::uint32_t>(bytes) != kMagic) return refused(PlanError::kMagic, 0, "magic");
   const auto version = load_le<std::uint16_t>(bytes.subspan(4));
-  if (version < kVersion || version > kVersionOfPlaces) {
+  if (version < kVersion || version > kVersionOfGoalAxes) {
     return refused(PlanError::kVersion, 4, "version");
   }
   if (load_le<std::uint32_t>(bytes.subspan(8)) != bytes.size()) {
@@ -162,6 +163,22 @@ DecodedPlan check_frame(std::span<const std::uint8_t> bytes) {
   return {};
 }
 
+/// At least one of them differs from what lower versions can say.
+GoalAxes read_goal_axes(FieldReader& in, CoordinateMask coordinates) {
+  GoalAxes axes;
+  axes.free = in.whole<std::uint8_t>("goal_free_axes", 0, coordinates);
+  if ((axes.free & ~coordinates) != 0) in.fail(PlanError::kRange, "goal_free_axes");
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(coordinates, axis)) continue;
+    axes.tolerance[axis] = in.f32("goal_axis_tolerance", kAxisTolerance);
+    if (has(axes.free, axis) && axes.tolerance[axis] != 0.0) {
+      in.fail(PlanError::kRange, "goal_axis_tolerance");
+    }
+  }
+  if (in.ok() && !axes.any()) in.fail(PlanError::kVersion, "version");
+  return axes;
+}
+
 /// Everything up to the side table; gives the two counts.
 struct Counts {
   std::size_t parameter_sets = 0;
@@ -171,15 +188,14 @@ Counts read_header(FieldReader& in, Plan& plan) {
   (void)in.raw<std::uint32_t>("magic");
   const auto version = in.raw<std::uint16_t>("version");
   const auto flags = in.raw<std::uint8_t>("flags");
-  plan.check_places = version == kVersionOfPlaces;
+  plan.check_places = (flags & kFlagCheckPlaces) != 0;
+  plan.check_envelopes = (flags & kFlagCheckEnvelopes) != 0;
   const auto others = static_cast<std::uint8_t>(flags & ~kFlagCheckPlaces);
-  const std::uint8_t asked = kFlagCheckPlaces | kFlagCheckEnvelopes;
-  if (others > kFlagsMax ||
-      (flags & kFlagCheckPlaces) != (plan.check_places ? kFlagCheckPlaces : 0) ||
-      (plan.check_places && (flags & asked) != asked)) {
+  const bool by_version =
+      version >= kVersionOfGoalAxes || plan.check_places == (version == kVersionOfPlaces);
+  if (others > kFlagsMax || !by_version || (plan.check_places && !plan.check_envelopes)) {
     in.fail(PlanError::kRange, "flags");
   }
-  plan.check_envelopes = (flags & kFlagCheckEnvelopes) != 0;
   plan.method = static_cast<PlanMethod>(others >> kMethodShift);
   plan.coordinates = in.whole<std::uint8_t>("coordinates", 1, 0x3F);
   (void)in.raw<std::uint32_t>("length");
@@ -203,6 +219,7 @@ Counts read_header(FieldReader& in, Plan& plan) {
   counts.parameter_sets =
       in.whole<std::uint8_t>("parameter_set_count", 1, kParameterSetsMax, PlanError::kCount);
   counts.steps = in.whole<std::uint8_t>("step_count", 1, kMaxSteps, PlanError::kCount);
+  if (version >= kVersionOfGoalAxes) plan.goal_axes = read_goal_axes(in, plan.coordinates);
   return counts;
 }
 
@@ -217,7 +234,7 @@ const char* to_string(PlanError error) {
     case PlanError::kMagic:
       return "not a plan file";
     case PlanError::kVersion:
-      return "another version of the format (this program reads versions 1 to 3)";
+      return "another version of the format (this program reads versions 1 to 4)";
     case PlanError::kLength:
       return "the length in the header is not the file's: cut off or appended to";
     case PlanError::kChecksum:

@@ -42,6 +42,7 @@ std::uint8_t flags_of(const Plan& plan) {
 
 /// The lowest that can hold the plan, so that a plan has one encoding.
 std::uint16_t version_of(const Plan& plan) {
+  if (plan.goal_axes.any()) return kVersionOfGoalAxes;
   if (plan.check_places) return kVersionOfPlaces;
   const auto& sets = plan.parameter_sets;
   return std::any_of(sets.begin(), sets.end(), has_rotation) ? kVersionOfRotation : kVersion;
@@ -74,6 +75,11 @@ void write_header(ByteWriter& out, const Plan& plan, std::size_t length) {
   write_text(out, plan.start_name);
   out.write(static_cast<std::uint8_t>(plan.parameter_sets.size()));
   out.write(static_cast<std::uint8_t>(plan.steps.size()));
+  if (version_of(plan) < kVersionOfGoalAxes) return;
+  out.write(plan.goal_axes.free);
+  for (int axis = 0; axis < 6; ++axis) {
+    if (has(plan.coordinates, axis)) out.write(f32(plan.goal_axes.tolerance[axis]));
+  }
 }
 
 void write_parameter_set(ByteWriter& out, const ParameterSet& set, std::uint16_t version) {
@@ -103,8 +109,8 @@ void write_range(ByteWriter& out, const Vector6& min, const Vector6& max,
   }
 }
 
-void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates,
-                std::uint16_t version) {
+void write_step(ByteWriter& out, const Step& step, const Plan& plan) {
+  const CoordinateMask coordinates = plan.coordinates;
   unsigned outcomes = 0;
   for (std::size_t i = 0; i < kOutcomes.size(); ++i) {
     if (step.outcomes[i].successor != kSuccessorFail) outcomes |= 1U << i;
@@ -122,7 +128,7 @@ void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates,
     out.write(envelope.always.bits);
     out.write(envelope.possible.bits);
     write_range(out, envelope.travelled_min, envelope.travelled_max, coordinates);
-    if (version == kVersionOfPlaces) {
+    if (plan.check_places) {
       write_range(out, envelope.place_min, envelope.place_max, coordinates);
     }
   }
@@ -131,11 +137,13 @@ void write_step(ByteWriter& out, const Step& step, CoordinateMask coordinates,
 std::size_t encoded_size(const Plan& plan) {
   const std::uint16_t version = version_of(plan);
   std::size_t size = kHeaderSize + plan.task_name.size() + plan.start_name.size() +
+                     goal_axes_size(plan.coordinates, version) +
                      set_size(version) * plan.parameter_sets.size() + kChecksumSize;
   for (const Step& step : plan.steps) {
     size += step_size(plan.coordinates);
     for (const OutcomeRule& rule : step.outcomes) {
-      if (rule.successor != kSuccessorFail) size += outcome_size(plan.coordinates, version);
+      if (rule.successor != kSuccessorFail)
+        size += outcome_size(plan.coordinates, plan.check_places);
     }
   }
   return size;
@@ -154,6 +162,12 @@ void check_representable(const Plan& plan) {
   refuse_unless(plan.steps.size() <= kMaxSteps,
                 std::to_string(plan.steps.size()) + " steps, at most 200");
   refuse_unless(plan.check_envelopes || !plan.check_places, "places are checked with envelopes");
+  for (int axis = 0; axis < 6; ++axis) {
+    const bool given = has(plan.goal_axes.free, axis) || plan.goal_axes.tolerance[axis] != 0.0;
+    refuse_unless(has(plan.coordinates, axis) || !given,
+                  "its goal has a tolerance of axis " + std::to_string(axis) +
+                      ", which is not one of the plan's coordinates");
+  }
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     const Step& step = plan.steps[i];
     for (int axis = 0; axis < 6; ++axis) {
@@ -182,7 +196,7 @@ std::vector<std::uint8_t> encode_plan(const Plan& plan) {
   write_header(out, plan, bytes.size());
   const std::uint16_t version = version_of(plan);
   for (const ParameterSet& set : plan.parameter_sets) write_parameter_set(out, set, version);
-  for (const Step& step : plan.steps) write_step(out, step, plan.coordinates, version);
+  for (const Step& step : plan.steps) write_step(out, step, plan);
   out.write(crc32c(std::span<const std::uint8_t>(bytes).first(out.offset())));
   assert(out.ok() && out.remaining() == 0);
 

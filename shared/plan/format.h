@@ -13,6 +13,7 @@ inline constexpr std::uint32_t kMagic = 0x1A504E54;  // "TNP" and an end-of-file
 inline constexpr std::uint16_t kVersion = 1;
 inline constexpr std::uint16_t kVersionOfRotation = 2;  // sets say which axes, and whose
 inline constexpr std::uint16_t kVersionOfPlaces = 3;    // and envelopes where the tool ends
+inline constexpr std::uint16_t kVersionOfGoalAxes = 4;  // and the goal's axes differ
 inline constexpr std::uint8_t kFlagCarriedAxes = 0x01;
 inline constexpr std::uint8_t kFlagPlainTouches = 0x02;
 inline constexpr std::uint8_t kSetFlagsMax = kFlagCarriedAxes | kFlagPlainTouches;
@@ -36,8 +37,12 @@ inline std::size_t axes_in(CoordinateMask coordinates) {
   return static_cast<std::size_t>(std::popcount(coordinates));
 }
 inline std::size_t step_size(CoordinateMask coordinates) { return 6 + 4 * axes_in(coordinates); }
-inline std::size_t outcome_size(CoordinateMask coordinates, std::uint16_t version) {
-  return 5 + (version == kVersionOfPlaces ? 16 : 8) * axes_in(coordinates);
+inline std::size_t outcome_size(CoordinateMask coordinates, bool places) {
+  return 5 + (places ? 16 : 8) * axes_in(coordinates);
+}
+/// What follows the header's counts.
+inline std::size_t goal_axes_size(CoordinateMask coordinates, std::uint16_t version) {
+  return version >= kVersionOfGoalAxes ? 1 + 4 * axes_in(coordinates) : 0;
 }
 
 }  // namespace tenon::plan_format

@@ -10,12 +10,10 @@
 #include "shared/math/pose.h"
 #include "shared/motion/move_parameters.h"
 #include "shared/motion/outcome.h"
+#include "shared/plan/axes.h"
+#include "shared/plan/goal_axes.h"
 
 namespace tenon {
-
-/// Bit a (0..5: x y z rx ry rz).
-using CoordinateMask = std::uint8_t;
-[[nodiscard]] constexpr bool has(CoordinateMask mask, int axis) { return (mask >> axis & 1U) != 0; }
 
 /// Where an outcome leads: a step index, or one of the two ends.
 using Successor = std::uint8_t;
@@ -92,6 +90,7 @@ struct Plan {
   Pose start;  ///< nominal, tool in task frame
   Pose goal;
   double goal_tolerance_m = 0.0;  ///< d_tol of the task
+  GoalAxes goal_axes;             ///< that do not count in it
   Compliance compliance;
   double force_limit_N = 20.0;
   double torque_limit_Nm = 2.0;

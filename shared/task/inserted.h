@@ -9,8 +9,11 @@ namespace tenon {
 /// Whether a tool tip stands where the task wants it inserted; always where it does not say.
 [[nodiscard]] bool inserted(const Task& task, const Pose& tool);
 
-/// Whether a tool stands within goal_tolerance_m of the goal: its distance, and what it is turned
-/// by along the task's coordinates times orientation_weight.
+/// How far from the goal a tool stands, in its tolerances: see shared/plan/goal_axes.h. Rotations
+/// that are not the task's coordinates do not count.
+[[nodiscard]] double tolerances_from_goal(const Task& task, const Pose& tool);
+
+/// Whether that is at most one.
 [[nodiscard]] bool within_tolerance(const Task& task, const Pose& tool);
 
 }  // namespace tenon

@@ -67,6 +67,7 @@ struct Task {
 
   Pose goal;
   double goal_tolerance_m = 2e-3;     ///< d_tol
+  GoalAxes goal_axes;                 ///< that do not count in it; only coordinates
   double goal_uncertainty_m2 = 2e-6;  ///< u_tol; 0: what the room at the goal allows, see planner/
   std::optional<BoxRegion> inserted;  ///< where every tool tip must end besides; see inserted.h
 

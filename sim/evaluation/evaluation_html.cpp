@@ -213,7 +213,8 @@ class Report {
                    shown) +
            drawing::figure(figure_of_ends(evaluation_, sample, view),
                            "Where the part ended about its goal, and the tolerance of " +
-                               format("%g mm.", 1e3 * task_.goal_tolerance_m) + shown);
+                               tolerance_text(task_.goal_tolerance_m, task_.goal_axes) + "." +
+                               shown);
   }
 
   [[nodiscard]] static std::string class_cell(const TrialResult& result) {

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/task/inserted.h"
 #include "shared/task/touched.h"
@@ -95,9 +96,11 @@ TrialResult TrialChain::result() const {
   result.path_m.push_back(to_um(truth.tool.position_m));
   result.contact_force_N_max = truth.contact_force_N_max;
   if (result.done && !result.at_goal) {
-    result.reason += format("; the part is %.2f mm from its goal (%.2f allowed) and %sinserted",
-                            1e3 * truth.error_norm_m, 1e3 * truth.goal_tolerance_m,
-                            inserted(task_, truth.tool) ? "" : "not ");
+    result.reason += format(
+        "; the part is %.2f mm, turned by %.2f degrees, from its goal (allowed: %s) and %sinserted",
+        1e3 * truth.error_norm_m, degrees(truth.error_norm_rad),
+        tolerance_text(task_.goal_tolerance_m, task_.goal_axes).c_str(),
+        inserted(task_, truth.tool) ? "" : "not ");
   }
   if (truth.solver_messages > 0) {
     result.done = false;

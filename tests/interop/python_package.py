@@ -77,6 +77,8 @@ def check_against_inspect(tenon, inspect, file, failures):
             "check_envelopes": plan.check_envelopes}
     for key, value in same.items():
         failures.check(told[key] == value, f"{name}: {key} = {value}, tenon-inspect says {told[key]}")
+    failures.check(plan.goal_axis_tolerances.tolist() == told.get("goal_axis_tolerances", [0.0] * 6)
+                   and plan.goal_free_axes == told.get("goal_free_axes", "none"), f"{name}: the goal's axes")
     compliance = {key: getattr(plan, key) for key in told["compliance"] if key != "axes"}
     failures.check({**compliance, "axes": plan.compliant_axes} == told["compliance"], f"{name}: compliance")
     for which in ("start", "goal"):
@@ -252,12 +254,18 @@ def check_example(source, folder, plan, failures):
     print(ended.stdout, end="")
 
 
-def make_baseline(tenon_plan, source, folder):
-    """A plan with a rotation and without envelopes, which is one of version 2."""
-    file = folder / "baseline.tnp"
-    subprocess.run([tenon_plan, source / "planner/tasks/box_on_table_se2.yaml", "--method", "single-particle", "-o", file],
-                   check=True, stdout=subprocess.DEVNULL)
-    return file
+def make_baselines(tenon_plan, source, folder):
+    """Plans with a rotation and without envelopes: one of version 2, and of 4 where the goal's axes differ."""
+    task = source / "planner/tasks/box_on_table_se2.yaml"
+    own = folder / "own_axes.yaml"
+    own.write_text(task.read_text().replace("  tolerance_m: 2e-3\n",
+                                            "  tolerance_m: 2e-3\n  tolerances: {x_m: 4e-3}\n  free: [rz]\n"))
+    files = []
+    for source_file in (task, own):
+        files.append(folder / f"{source_file.stem}.tnp")
+        subprocess.run([tenon_plan, source_file, "--method", "single-particle", "-o", files[-1]], check=True,
+                       stdout=subprocess.DEVNULL)
+    return files
 
 
 def main(failures):
@@ -269,10 +277,10 @@ def main(failures):
         folder = pathlib.Path(scratch)
         check_documented(tenon, source, failures)
         check_message_tables(tenon, source, failures)
-        files = sorted(plans.glob("*.tnp")) + [make_baseline(programs / "tenon-plan", source, folder)]
+        files = sorted(plans.glob("*.tnp")) + make_baselines(programs / "tenon-plan", source, folder)
         versions = {file: check_against_inspect(tenon, inspect, file, failures) for file in files}
-        failures.check(set(versions.values()) == {1, 2, 3}, f"plans of versions {set(versions.values())}")
-        for version in (1, 2, 3):
+        failures.check(set(versions.values()) == {1, 2, 3, 4}, f"plans of versions {set(versions.values())}")
+        for version in (1, 2, 3, 4):
             file = next(file for file in files if versions[file] == version)
             refused = check_refusals_alike(tenon, inspect, folder, file, failures)
             print(f"{file.name}, version {version}: {refused} of {EDITS} edits are refused, by both at the same byte")

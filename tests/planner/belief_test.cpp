@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "planner/belief/belief_summary.h"
 #include "tests/planner/room_task.h"
 
 namespace tenon::planner {
@@ -141,6 +142,41 @@ TEST(Belief, IdentityTellsContactsApartAndForgivesMicrometres) {
   other = one;
   other.particles[0].pose.position_m.x() += 2e-3;
   EXPECT_NE(identity(one, grid), identity(other, grid));
+}
+
+// What is free at the goal need not become certain; what has a tolerance of its own weighs as that.
+TEST(Belief, AxesOfTheirOwnWeighAsTheirTolerancesDo) {
+  Task task = room_task();
+  const Belief belief{{at(0.1, 0.0), at(-0.1, 0.0), at(0.0, 0.3), at(0.0, -0.3)}};
+  const double x_m2 = 0.01 / 2.0;
+  const double y_m2 = 0.09 / 2.0;
+  EXPECT_NEAR(uncertainty(belief, metric_of(task)), x_m2 + y_m2, 1e-12);
+  task.goal_axes.free = 0b10;
+  EXPECT_NEAR(uncertainty(belief, metric_of(task)), x_m2, 1e-12);
+  task.goal_axes.free = 0;
+  task.goal_axes.tolerance[1] = 3.0 * task.goal_tolerance_m;
+  EXPECT_NEAR(uncertainty(belief, metric_of(task)), x_m2 + y_m2 / 9.0, 1e-12);
+  task.goal_axes.tolerance[1] = 1e-5;
+  EXPECT_NEAR(grid_of(task).cell_m, 1e-6, 1e-12);
+}
+
+TEST(Belief, IsAtTheGoalWhereEveryAxisIsWithinItsOwn) {
+  Task task = room_task();
+  const auto arrived = [&](double off_x_m, double off_y_m) {
+    const Pose& goal = task.goal;
+    const Belief belief{{at(goal.position_m.x() + off_x_m, goal.position_m.y() + off_y_m)}};
+    return at_goal(summarise(belief, task), task);
+  };
+  const double half_m = 0.5 * task.goal_tolerance_m;
+  EXPECT_TRUE(arrived(0.9 * half_m, 0.0));
+  EXPECT_FALSE(arrived(0.9 * half_m, 0.9 * half_m));
+  task.goal_axes.tolerance[1] = task.goal_tolerance_m;
+  EXPECT_TRUE(arrived(0.9 * half_m, 0.9 * half_m));
+  EXPECT_FALSE(arrived(0.0, 1.1 * half_m));
+  task.goal_axes.tolerance[1] = 0.0;
+  task.goal_axes.free = 0b10;
+  EXPECT_TRUE(arrived(0.9 * half_m, 0.2));
+  EXPECT_FALSE(arrived(1.1 * half_m, 0.0));
 }
 
 TEST(Belief, StatesAreToldApartFinerThanTheGoalsTolerance) {

@@ -83,6 +83,21 @@ TEST(ConsistentAnchor, WithLooseTolerances) {
   EXPECT_GT(watched_search(task, WallRollout(room()), 500), 20U);
 }
 
+TEST(ConsistentAnchor, WithAxesOfTheirOwn) {
+  Task task = room_task();
+  task.goal_axes.free = 0b01;
+  EXPECT_GT(watched_search(task, WallRollout(room()), 500), 10U);
+  task.goal_axes.free = 0;
+  task.goal_axes.tolerance[1] = 0.05;
+  EXPECT_GT(watched_search(task, WallRollout(room()), 500), 20U);
+  // What its own tolerance allows is no way to go.
+  Particle particle;
+  particle.pose = displaced(task.goal, 0.15 * Vector6::Unit(1));
+  const double left_m = 0.15 - 0.05 - task.goal_tolerance_m;
+  EXPECT_NEAR(anchor_heuristic(summarise({{particle}}, task), task),
+              left_m * task.distance_weight_per_m, 1e-9);
+}
+
 TEST(ConsistentAnchor, WithAnInsertedPredicate) {
   Task task = room_task();
   task.goal_tolerance_m = 0.06;

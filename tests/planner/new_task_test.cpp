@@ -89,12 +89,16 @@ TEST(NewTask, SaysWhatOverlapsAndWhatIsLockedIn) {
   EXPECT_FALSE(locked.way_out.has_value());
 }
 
-/// The keyed peg's files, and the task that is written for them.
+/// Two parts' files, the keyed peg's where no others are given, and the task that is written for
+/// them.
 struct Written {
-  explicit Written(double uniform_rad) {
-    const auto parts = tests::example_parts();
-    const auto peg = folder.put("peg.stl", tests::binary_stl(parts.at("keyed_peg.stl"), 1e-3));
-    const auto socket = folder.put("socket.obj", tests::obj(parts.at("keyed_socket.stl"), 1.0));
+  explicit Written(double uniform_rad)
+      : Written(uniform_rad, tests::example_parts().at("keyed_peg.stl"),
+                tests::example_parts().at("keyed_socket.stl")) {}
+
+  Written(double uniform_rad, const TriangleMesh& plug_mesh, const TriangleMesh& socket_mesh) {
+    const auto peg = folder.put("peg.stl", tests::binary_stl(plug_mesh, 1e-3));
+    const auto socket = folder.put("socket.obj", tests::obj(socket_mesh, 1.0));
     const config::PartFile plug_file = config::load_part(peg);
     const config::PartFile socket_file = config::load_part(socket);
     task.name = "new";
@@ -142,6 +146,18 @@ TEST(NewTask, TurnsWhereAskedTo) {
   EXPECT_GT(task.starts.front().sigma[5], 0.0);
   sim::OdeRollout physics(task);
   EXPECT_FALSE(physics.in_collision(task.goal));
+}
+
+// As uncertain as the others, since touches meet what is turned; at the goal any will do.
+TEST(NewTask, ARoundPegsYawIsUncertainAndFreeAtTheGoal) {
+  const Written written(0.05, round_peg(10e-3), round_socket(10.3e-3));
+  const Task task = load_task(written.file);
+  EXPECT_EQ(task.coordinates, 0b111111);
+  EXPECT_GT(task.starts.front().sigma[5], 0.0);
+  EXPECT_EQ(task.goal_axes.free, 0b100000);
+  EXPECT_FALSE(load_task(Written(0.05).file).goal_axes.any());
+  EXPECT_FALSE(
+      load_task(Written(0.0, round_peg(10e-3), round_socket(10.3e-3)).file).goal_axes.any());
 }
 
 TEST(NewTask, ATurningPartIsHeldAboveItsChamfer) {

@@ -72,10 +72,10 @@ TEST(LoadPlan, NamesFileByteFieldAndReason) {
     write_file(file, bytes);
     return refusal([&] { (void)load_plan(file); });
   };
-  bytes[4] = 4;
+  bytes[4] = 5;
   EXPECT_EQ(message(), file.string() +
                            ": byte 4, version: another version of the format (this program reads "
-                           "versions 1 to 3); plan again");
+                           "versions 1 to 4); plan again");
   bytes[4] = 1;
   bytes[100] ^= 1;
   EXPECT_EQ(

@@ -91,6 +91,31 @@ TEST(TaskErrors, UniformOnesReachToTheirBounds) {
       "a plan for uniform ones holds to their bounds");
 }
 
+TEST(TaskGoal, SaysWhichAxesHaveAToleranceOfTheirOwnAndWhichHaveNone) {
+  const ScratchFolder folder;
+  constexpr const char* kWhat = "tolerance_m: 0.01,";
+  const auto loaded = [&](const char* by) {
+    return load_task(folder.put("own.yaml", replaced(kPegTask, kWhat, by)));
+  };
+  EXPECT_FALSE(load(folder, "").goal_axes.any());
+  const Task own = loaded("tolerance_m: 0.01, tolerances: {z_m: 0.003}, free: [x],");
+  EXPECT_EQ(own.goal_axes.tolerance, 0.003 * Vector6::Unit(2));
+  EXPECT_EQ(own.goal_axes.free, 0b000001);
+  EXPECT_EQ(tolerance_text(own.goal_tolerance_m, own.goal_axes), "10 mm, x any, z 3 mm");
+
+  EXPECT_EQ(refused(folder, kWhat, "tolerance_m: 0.01, tolerances: {z_m: 0},", ""),
+            ":10: goal.tolerances.z_m = 0, must be in (0, 1]");
+  EXPECT_EQ(refused(folder, kWhat, "tolerance_m: 0.01, tolerances: {y_m: 0.1},", ""),
+            ":10: goal.tolerances.y_m: names y, which is not a search coordinate");
+  EXPECT_EQ(refused(folder, kWhat, "tolerance_m: 0.01, free: [rz],", ""),
+            ":10: goal.free: names rz, which is not a search coordinate");
+  EXPECT_EQ(refused(folder, kWhat, "tolerance_m: 0.01, tolerances: {z_m: 0.1}, free: [z],", ""),
+            ":10: goal.free: names z, which has a tolerance");
+  EXPECT_EQ(refused(folder, kWhat, "tolerance_m: 0.01, tolerances: {z: 0.1},", ""),
+            ":10: goal.tolerances.z: is an unknown key, known here: x_m, y_m, z_m, rx_rad, ry_rad, "
+            "rz_rad");
+}
+
 TEST(TaskVariant, ChangesWhatItNamesAndNothingElse) {
   const ScratchFolder folder;
   const Task base = load(folder, "");
@@ -177,7 +202,7 @@ TEST(TaskVariant, RefusesEachBadLineWithItsPlace) {
        ":10: goal.tolerance_m = 2, must be in (0, 1]; is it in mm? then write 0.002 m"},
       {"{tolerance_m: 0.002}", "{tolerance: 2}", "#fine",
        ":18: variants.fine.goal.tolerance: is an unknown key, known here: pose, tolerance_m, "
-       "uncertainty_m2, inserted; did you mean tolerance_m?"},
+       "tolerances, free, uncertainty_m2, inserted; did you mean tolerance_m?"},
       {"    search: {w1: 3}", "    serach: {w1: 3}", "#fine",
        ":20: variants.fine.serach: is an unknown key, known here: name, coordinates, held, "
        "environment, starts, error_about_m, particle_sigmas, goal, primitives, speeds, contact, "

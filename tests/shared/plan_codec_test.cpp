@@ -5,32 +5,20 @@
 #include <limits>
 #include <random>
 
-#include "shared/base/bytes.h"
-#include "shared/base/crc32c.h"
 #include "shared/base/error.h"
 #include "shared/plan/codec.h"
 #include "tests/shared/example_plans.h"
+#include "tests/shared/plan_bytes.h"
 #include "tests/support/refusal.h"
 
 namespace tenon {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using tests::Bytes;
+using tests::decoded;
 using tests::documented_plan;
 using tests::long_plan;
-
-// Makes length and checksum right again, so that what lies behind them is looked at.
-void reseal(Bytes& bytes) {
-  store_le(std::span(bytes).subspan(8), static_cast<std::uint32_t>(bytes.size()));
-  const std::size_t covered = bytes.size() - 4;
-  store_le(std::span(bytes).subspan(covered), crc32c(std::span(bytes).first(covered)));
-}
-
-Plan decoded(const Bytes& bytes) {
-  const DecodedPlan result = decode_plan(bytes);
-  EXPECT_EQ(result.error, PlanError::kNone) << to_string(result.error) << ": " << result.field;
-  return result.plan.value_or(Plan{});
-}
+using tests::reseal;
 
 double rounded(double value) { return static_cast<float>(value); }
 

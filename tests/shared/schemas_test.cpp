@@ -213,7 +213,7 @@ environment:
   - {name: socket, mesh: {file: parts/keyed_socket.stl, scale: 0.001}, pose: {position_m: [3, 0, 0]}}
 starts:
   - {name: a, pose: {position_m: [0, 0, 0.1]}, sigma_m: [0.008, 0.008, 0.008]}
-goal: {pose: {position_m: [0, 0, 0]}, tolerance_m: 2e-3, inserted: {box_m: [1, 1, 1], pose: {position_m: [0, 0, 0]}}}
+goal: {pose: {position_m: [0, 0, 0]}, tolerance_m: 2e-3, tolerances: {z_m: 4e-3}, free: [y], inserted: {box_m: [1, 1, 1], pose: {position_m: [0, 0, 0]}}}
 primitives: {step_m: 0.01, long_step_m: 0.2, direct_reach_m: 0.1}
 speeds: {approach_mps: 0.10, contact_mps: 0.05}
 contact: {force_on_N: 9, force_keep_N: 3, force_off_N: 1.5, debounce_s: 0.006, force_limit_N: 20}

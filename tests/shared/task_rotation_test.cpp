@@ -80,6 +80,16 @@ TEST(TaskRotation, TheGoalIsJudgedByTheFullPose) {
   EXPECT_FALSE(stands(turning, 0.0, 0.0201));
   EXPECT_TRUE(stands(turning, 0.9e-3, 0.0109));
   EXPECT_FALSE(stands(turning, 1.1e-3, 0.0109));
+  // An axis of its own counts by itself, and one that is free not at all.
+  Task own = turning;
+  own.goal_axes.tolerance[5] = 0.05;
+  EXPECT_TRUE(stands(own, 1.9e-3, 0.049));
+  EXPECT_FALSE(stands(own, 0.0, 0.051));
+  EXPECT_FALSE(stands(own, 2.1e-3, 0.0));
+  Task free = turning;
+  free.goal_axes.free = 0b100000;
+  EXPECT_TRUE(stands(free, 1.9e-3, 1.0));
+  EXPECT_FALSE(stands(free, 2.1e-3, 1.0));
   // Where no coordinate turns, a tilt is the cell's, not the plan's.
   EXPECT_TRUE(stands(loaded(with("x, y", "x, y")), 1.9e-3, 0.1));
 }

@@ -1,4 +1,4 @@
-"""The plan file (.tnp), versions 1 to 3, as shared/plan/FORMAT.md has it byte by byte."""
+"""The plan file (.tnp), versions 1 to 4, as shared/plan/FORMAT.md has it byte by byte."""
 
 import dataclasses
 import math
@@ -15,7 +15,7 @@ METHODS = ("mha", "single-particle", "contact-greedy")
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 
 _MAGIC = b"TNP\x1a"
-_VERSIONS = (1, 2, 3)
+_VERSIONS = (1, 2, 3, 4)
 _HEADER_BYTES = 205
 _CHECKSUM_BYTES = 4
 _ALL_AXES = 0x3F
@@ -43,7 +43,7 @@ class OutcomeRule:
         possible: contacts that some had
         travelled_min: (6,) m and rad
         travelled_max: (6,) m and rad
-        place_min: (6,) m and rad, from where the tool stood when the plan began; zero below version 3
+        place_min: (6,) m and rad, from where the tool stood when the plan began; zero where the plan says none
         place_max: (6,) m and rad
     """
 
@@ -139,6 +139,8 @@ class Plan:
         goal_position_m: (3,) likewise
         goal_orientation_wxyz: (4,)
         goal_tolerance_m: within which a draw is at the goal
+        goal_axis_tolerances: (6,) m and rad, of axes that do not count in goal_tolerance_m; 0 where one does
+        goal_free_axes: along which any end will do, such as "rz"
         mass_kg: of the compliance, as the next five
         damping_Nspm
         stiffness_Npm
@@ -170,6 +172,8 @@ class Plan:
     goal_position_m: np.ndarray
     goal_orientation_wxyz: np.ndarray
     goal_tolerance_m: float
+    goal_axis_tolerances: np.ndarray
+    goal_free_axes: str
     mass_kg: float
     damping_Nspm: float
     stiffness_Npm: float
@@ -333,7 +337,22 @@ def _range(reader, names, axes):
     return low, high
 
 
-def _outcome(reader, version, step, step_count, axes):
+def _goal_axes(reader, version, coordinates, axes):
+    """Which of a goal's axes do not count in its one tolerance, and what each allows."""
+    tolerances = np.zeros(6)
+    if version < 4:
+        return tolerances, "none"
+    free = reader.bits("goal_free_axes", "B", coordinates)
+    for axis in axes:
+        tolerances[axis] = reader.f32("goal_axis_tolerance", (0.0, 10.0, False))
+        if free >> axis & 1 and tolerances[axis]:
+            reader.refuse("goal_axis_tolerance", f"= {tolerances[axis]:g}, must be 0 of a free axis")
+    if not free and not tolerances.any():
+        raise FileError(reader.file, "version: = 4, though a lower one says as much: no axis of the goal differs", 4)
+    return tolerances, _axes(free)
+
+
+def _outcome(reader, places, step, step_count, axes):
     successor = reader.take("successor", "B")
     if successor != _DONE and not step < successor < step_count:
         reader.refuse("successor", f"= {successor}, must be a step after {step}, below {step_count}, or {_DONE}")
@@ -342,19 +361,19 @@ def _outcome(reader, version, step, step_count, axes):
     if always & ~possible:
         reader.refuse("possible", "must have every bit of always")
     travelled = _range(reader, ("travelled_min", "travelled_max"), axes)
-    place = _range(reader, ("place_min", "place_max"), axes if version == 3 else [])
+    place = _range(reader, ("place_min", "place_max"), axes if places else [])
     return OutcomeRule("done" if successor == _DONE else successor, contacts(always), contacts(possible),
                        *travelled, *place)
 
 
-def _step(reader, version, index, step_count, set_count, axes):
+def _step(reader, places, index, step_count, set_count, axes):
     parameter_set = reader.whole("parameter_set", "B", 0, set_count - 1)
     present = reader.bits("outcomes", "B", 0x1F)
     slow_from_m = reader.f32("slow_from_m", (0.0, 10.0, False))
     displacement = np.zeros(6)
     for axis in axes:
         displacement[axis] = reader.f32("displacement", _TRAVEL)
-    outcomes = {name: _outcome(reader, version, index, step_count, axes)
+    outcomes = {name: _outcome(reader, places, index, step_count, axes)
                 for bit, name in enumerate(OUTCOMES) if present >> bit & 1}
     return Step(parameter_set, slow_from_m, displacement, outcomes)
 
@@ -367,7 +386,7 @@ def _check_whole(file, data):
         raise FileError(file, f"magic: is {data[:4].hex(' ')}, a plan begins with {_MAGIC.hex(' ')}", 0)
     version, = struct.unpack_from("<H", data, 4)
     if version not in _VERSIONS:
-        raise FileError(file, f"version: = {version}, this reads versions 1 to 3", 4)
+        raise FileError(file, f"version: = {version}, this reads versions 1 to 4", 4)
     length, = struct.unpack_from("<I", data, 8)
     if length != len(data):
         raise FileError(file, f"length: = {length}, the file has {len(data)} bytes", 8)
@@ -387,8 +406,9 @@ def decode_plan(data, file="plan"):
     flags = reader.take("flags", "B")
     if flags & ~0x0f or (flags >> 1 & 3) >= len(METHODS):
         reader.refuse("flags", f"= {flags:#x}, must have bits 0 to 3 alone, and a method below {len(METHODS)}")
-    if (version == 3) != (flags & 0x08 != 0) or flags & 0x09 == 0x08:
-        reader.refuse("flags", f"= {flags:#x}, must have bit 3, with bit 0, in version 3 and there alone")
+    places = flags & 0x08 != 0
+    if version < 4 and places != (version == 3) or flags & 0x09 == 0x08:
+        reader.refuse("flags", f"= {flags:#x}, must have bit 3, with bit 0, in version 3, may in 4, and nowhere else")
     coordinates = reader.whole("coordinates", "B", 1, _ALL_AXES)
     axes = [axis for axis in range(6) if coordinates >> axis & 1]
     reader.at = 12
@@ -415,10 +435,11 @@ def decode_plan(data, file="plan"):
     header["start_name"] = reader.name("start_name")
     set_count = reader.whole("parameter_set_count", "B", 1, _COUNT_MAX)
     step_count = reader.whole("step_count", "B", 1, _COUNT_MAX)
+    header["goal_axis_tolerances"], header["goal_free_axes"] = _goal_axes(reader, version, coordinates, axes)
     sets = [_parameter_set(reader, version, header["force_limit_N"]) for _ in range(set_count)]
     if version == 2 and all(s.sensed_axes == _axes(_ALL_AXES) and not s.carried_axes and s.aligns for s in sets):
         raise FileError(file, "version: = 2, though version 1 says as much: every axis is sensed, none is carried", 4)
-    steps = [_step(reader, version, i, step_count, set_count, axes) for i in range(step_count)]
+    steps = [_step(reader, places, i, step_count, set_count, axes) for i in range(step_count)]
     if reader.at != len(data) - _CHECKSUM_BYTES:
         raise FileError(file, f"steps: {len(data) - _CHECKSUM_BYTES - reader.at} bytes are left over behind the last",
                         reader.at)

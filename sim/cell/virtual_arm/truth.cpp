@@ -37,10 +37,10 @@ std::string in_mm(const Vector6& displacement) {
 }  // namespace
 
 std::string describe(const Truth& truth) {
-  const std::string end =
-      format("%.2f mm from its goal, %s the tolerance of %g mm; it was pressed with %.0f N at most",
-             1e3 * truth.error_norm_m, truth.within_tolerance ? "within" : "NOT within",
-             1e3 * truth.goal_tolerance_m, truth.contact_force_N_max);
+  const std::string end = format(
+      "%.2f mm from its goal, %s the tolerance of %s; it was pressed with %.0f N at most",
+      1e3 * truth.error_norm_m, truth.within_tolerance ? "within" : "NOT within",
+      tolerance_text(truth.goal_tolerance_m, truth.goal_axes).c_str(), truth.contact_force_N_max);
   return "the environment was off by " + in_mm(truth.offset) + "\nthe part ended " + end + "\n";
 }
 

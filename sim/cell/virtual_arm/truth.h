@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shared/math/pose.h"
+#include "shared/plan/goal_axes.h"
 #include "sim/cell/virtual_arm/world_draw.h"
 
 namespace tenon::sim {
@@ -37,6 +38,7 @@ struct Truth {
   double error_norm_m = 0.0;
   double error_norm_rad = 0.0;
   double goal_tolerance_m = 0.0;
+  GoalAxes goal_axes;                ///< that do not count in it
   bool within_tolerance = false;     ///< see shared/task/inserted.h
   double contact_force_N_max = 0.0;  ///< of the environment on the part, instantaneous
   std::vector<std::string> touching;

@@ -356,6 +356,7 @@ Truth VirtualCell::Impl::truth() const {
   truth.error_norm_m = truth.error.head<3>().norm();
   truth.error_norm_rad = truth.error.tail<3>().norm();
   truth.goal_tolerance_m = task_.goal_tolerance_m;
+  truth.goal_axes = task_.goal_axes;
   truth.within_tolerance = within_tolerance(task_, truth.tool);
   truth.contact_force_N_max = watch_.contact_force_N_max();
   truth.touching = arm_.scene().touching();
