@@ -4,6 +4,7 @@
 
 #include "executor/dry_run/dry_run_report.h"
 #include "hw/bus_load/bus_load.h"
+#include "hw/robot_arm/open_arm.h"
 #include "shared/base/text.h"
 #include "shared/config/load.h"
 
@@ -22,10 +23,10 @@ void StepPrinter::consume(const CycleRecord& record) {
 }
 
 void HoldPrinter::consume(const CycleRecord& record) {
-  if (printed_) return;
-  const std::string line = hold_line(record, cell_);
-  printed_ = !line.empty();
-  if (printed_) std::fprintf(stderr, "tenon-exec: %s\n", line.c_str());
+  if (record.hold == printed_) return;
+  printed_ = record.hold;
+  const std::string line = hold_line(record, cell_, hw::fault_text(record.arm_fault, cell_.robot));
+  std::fprintf(stderr, "tenon-exec: %s\n", line.c_str());
 }
 
 void print_opening(const Plan& plan, const Cell& cell, const DryRun& dry_run) {

@@ -25,8 +25,8 @@ class StepPrinter : public RecordConsumer {
   std::int32_t awaited_ = -1;
 };
 
-/// Says at once, on standard error, that the run is over and a joint held until the user stops; on
-/// the recorder's thread.
+/// Says at once, on standard error, that the run is over and a joint held until the user stops, and
+/// where it is not held any more; on the recorder's thread.
 class HoldPrinter : public RecordConsumer {
  public:
   explicit HoldPrinter(const Cell& cell) : cell_(cell) {}
@@ -34,7 +34,7 @@ class HoldPrinter : public RecordConsumer {
 
  private:
   Cell cell_;
-  bool printed_ = false;
+  Hold printed_ = Hold::kNone;
 };
 
 /// What is about to run where, and how the dry run slowed it.

@@ -81,7 +81,7 @@ std::array<std::uint32_t, BusPair::kBuses> frames_at_once(const Robot& robot) {
 }  // namespace
 
 TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
-                 const std::atomic<bool>& stop)
+                 std::atomic<bool>& stop)
     : options_(options),
       task_(task),
       stop_(stop),

@@ -38,7 +38,7 @@ class TaskRun {
   /// @param stop set by anyone to end the run in good order
   /// @throws InputError where something cannot be opened
   TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
-          const std::atomic<bool>& stop);
+          std::atomic<bool>& stop);
   ~TaskRun();
   TaskRun(const TaskRun&) = delete;
   TaskRun& operator=(const TaskRun&) = delete;
@@ -67,7 +67,7 @@ class TaskRun {
 
   const Options& options_;
   ControlTask& task_;
-  const std::atomic<bool>& stop_;
+  std::atomic<bool>& stop_;
   std::unique_ptr<hw::Buses> buses_;
   std::unique_ptr<CanLog> can_log_;
   std::unique_ptr<hw::RecordingBus> logged_bus_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "shared/base/time_units.h"
 
@@ -62,9 +63,13 @@ ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& 
   motion_ns_ += cycle_ns_;
   ArmFeedback feedback = heard;
   if (joint_torque_) joint_torque_->feel(feedback);
-  if (const auto ending = supervision_.update(feedback, following())) take(*ending);
+  if (const auto ending = supervision_.update(feedback, following())) {
+    // An encoder that jumps is no joint that slips.
+    if (ending->reason == EndReason::kEncoderJump) brake_watch_.shift(ending->index, ending->value);
+    take(*ending);
+  }
   follow_brakes(feedback);
-  if (stop_requested_) take(Ending{.reason = EndReason::kStopRequested});
+  if (std::exchange(stop_requested_, false)) take(Ending{.reason = EndReason::kStopRequested});
   take(act(feedback));
   const bool about_to_enable = state_ == State::kWaiting || state_ == State::kCatching;
   if (about_to_enable && feedback.state != ArmState::kEnabled)
@@ -93,6 +98,7 @@ void ControlTask::report_poor_feedback(std::uint64_t incomplete_cycles) noexcept
 }
 
 ForceLimit ControlTask::force_limit() const noexcept {
+  if (state_ >= State::kDisabling) return {};
   if (parameters_.masked.masks(EndReason::kForceFault, ArmFaultKind::kNone)) return {};
   return supervision_.force_limit();
 }
@@ -152,6 +158,7 @@ Event ControlTask::remember(const Ending& ending) {
     ending_ = ending;
     ending_.disable_confirmed = before.disable_confirmed;
     ending_.brakes_unwatched = before.brakes_unwatched;
+    ending_.hold = before.hold;
   }
   if (slipped) ending_.slip = {ending.index, ending.value, ending.bound};
   if (came_to_its_end(ending.reason)) return Event::kWorkEnded;
@@ -205,6 +212,7 @@ void ControlTask::write_record(std::int64_t now_ns, const ArmFeedback& feedback,
   r.end_reason = static_cast<std::uint8_t>(ending_.reason);
   r.arm_fault = ending_.arm_fault;
   r.slip = ending_.slip;
+  r.hold = ending_.hold;
   r.brakes_unwatched = ending_.brakes_unwatched;
   r.wrench_fresh = supervision_.wrench_usable();
   r.pose = data_of(supervision_.tool());

@@ -60,7 +60,8 @@ class ControlTask {
   /// cycle stretches the motion and never makes it jump.
   [[nodiscard]] Command cycle(std::int64_t now_ns, const ArmFeedback& heard) noexcept;
 
-  /// Ends the run: on the user's request, because the loop is too late, or the bus too bad.
+  /// Ends the run: on the user's request, because the loop is too late, or the bus too bad. A
+  /// request counts once: who holds an arm whose brake failed goes on until the next one.
   void request_stop() noexcept { stop_requested_ = true; }
   void report_overruns(std::uint64_t late_cycles) noexcept;
   void report_poor_feedback(std::uint64_t incomplete_cycles) noexcept;
@@ -82,8 +83,11 @@ class ControlTask {
   [[nodiscard]] double cycle_s() const noexcept { return cycle_s_; }
   /// Cycles since the tare in which guarded moves could see no sample.
   [[nodiscard]] std::uint64_t blind_cycles() const noexcept { return supervision_.blind_cycles(); }
-  /// At which the arm may stop its drives by itself.
+  /// At which the arm may stop its drives by itself; none once they have been told to go off. An
+  /// arm that is held then may lean on what is put under it.
   [[nodiscard]] ForceLimit force_limit() const noexcept;
+  /// Holding needs no sensor: what becomes of it then lets nothing fall.
+  [[nodiscard]] bool relies_on_sensor() const noexcept { return state_ != State::kCatching; }
   /// Largest external force and torque since the tare, N and Nm.
   [[nodiscard]] double peak_force_N() const noexcept { return supervision_.peak_force_N(); }
   [[nodiscard]] double peak_torque_Nm() const noexcept { return supervision_.peak_torque_Nm(); }
@@ -159,7 +163,7 @@ class ControlTask {
   [[nodiscard]] bool brakes_under_watch() const;
   void name_unseen();
   void name_not_disabled(std::uint32_t off);
-  [[nodiscard]] Turn keep_power(const ArmFeedback& feedback) const;
+  [[nodiscard]] Turn keep_power(const ArmFeedback& feedback);
   void write_record(std::int64_t now_ns, const ArmFeedback& feedback, const Command& command);
 
   Cell cell_;

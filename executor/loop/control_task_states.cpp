@@ -195,10 +195,17 @@ void ControlTask::name_not_disabled(std::uint32_t off) {
 }
 
 // Until the user has something under the arm, and says so. An arm in a fault holds nothing, however
-// long one waits.
-ControlTask::Turn ControlTask::keep_power(const ArmFeedback& feedback) const {
-  const bool holds = cell_.hold_if_brake_fails && feedback.state != ArmState::kFault;
-  return holds ? Turn() : Turn(Event::kStop);
+// long one waits, nor does one whose drives do not come on.
+ControlTask::Turn ControlTask::keep_power(const ArmFeedback& feedback) {
+  if (!cell_.hold_if_brake_fails) return Event::kStop;
+  const bool on = feedback.state == ArmState::kEnabled;
+  if (on) ending_.hold = Hold::kHeld;
+  const bool held = ending_.hold == Hold::kHeld;
+  const bool too_late = !held && time_in_state_s() >= parameters_.enable_timeout_s;
+  if (feedback.state != ArmState::kFault && !too_late && on == held) return {};
+  ending_.hold = held ? Hold::kLost : Hold::kRefused;
+  if (ending_.arm_fault.kind == ArmFaultKind::kNone) ending_.arm_fault = feedback.fault;
+  return Event::kStop;
 }
 
 std::uint32_t ControlTask::all_joints() const { return (1U << cell_.robot.joints.size()) - 1U; }

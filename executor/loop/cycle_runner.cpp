@@ -56,6 +56,7 @@ void CycleRunner::decide(std::int64_t now_ns) noexcept {
   feedback_.fault = arm_.fault();
   const ControlTask::Command command = task_.cycle(now_ns, feedback_);
   arm_.limit_force(task_.force_limit());
+  arm_.rely_on_sensor(task_.relies_on_sensor());
   arm_.command(now_ns, command.request, command.position);
   ++statistics_.cycles;
 }
@@ -69,12 +70,12 @@ void CycleRunner::publish(std::int64_t wakeup_late_ns, std::int64_t compute_ns) 
   if (sink_ != nullptr) sink_->record(record);
 }
 
-void CycleRunner::run(const std::atomic<bool>& stop) noexcept {
+void CycleRunner::run(std::atomic<bool>& stop) noexcept {
   MonotonicClock clock;
   run(stop, clock);
 }
 
-void CycleRunner::run(const std::atomic<bool>& stop, Clock& clock) noexcept {
+void CycleRunner::run(std::atomic<bool>& stop, Clock& clock) noexcept {
   const auto deadline_ns =
       static_cast<std::int64_t>(parameters_.feedback_deadline * static_cast<double>(cycle_ns_));
   const auto late_sync_ns = static_cast<std::int64_t>(kLateSync * static_cast<double>(cycle_ns_));
@@ -83,7 +84,7 @@ void CycleRunner::run(const std::atomic<bool>& stop, Clock& clock) noexcept {
   while (!task_.finished()) {
     wait_until(due_ns, clock);
     const std::int64_t awake_ns = clock.now_ns();
-    if (stop.load(std::memory_order_relaxed)) task_.request_stop();
+    if (stop.exchange(false, std::memory_order_relaxed)) task_.request_stop();
     if (awake_ns - last_awake_ns > late_sync_ns) task_.distrust_samples();
     last_awake_ns = awake_ns;
 

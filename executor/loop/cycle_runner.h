@@ -53,9 +53,9 @@ class CycleRunner {
   }
 
   /// Runs to the end on the system's clock. @param stop set by anyone to end the run in good order
-  void run(const std::atomic<bool>& stop) noexcept;
+  void run(std::atomic<bool>& stop) noexcept;
   /// The same on another clock; the arm's wait() must go by it, too.
-  void run(const std::atomic<bool>& stop, Clock& clock) noexcept;
+  void run(std::atomic<bool>& stop, Clock& clock) noexcept;
 
   [[nodiscard]] const Statistics& statistics() const noexcept { return statistics_; }
   [[nodiscard]] const BlackBox& black_box() const noexcept { return black_box_; }

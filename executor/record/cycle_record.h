@@ -47,6 +47,7 @@ struct CycleRecord {
   ArmRequest request = ArmRequest::kDisabled;
   std::uint8_t end_reason = 0;
   ArmFault arm_fault;  ///< of the Ending, as the next two
+  Hold hold = Hold::kNone;
   BrakeSlip slip;
   std::uint32_t brakes_unwatched = 0;  ///< bit i: of joint i
 

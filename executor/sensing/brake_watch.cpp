@@ -24,6 +24,12 @@ void BrakeWatch::update(const JointVector& measured, std::uint32_t fresh, std::u
   }
 }
 
+void BrakeWatch::shift(int joint, double by) {
+  JointWatch& shifted = joints_[static_cast<std::size_t>(joint)];
+  shifted.off_at += by;
+  shifted.trailing += by;
+}
+
 void BrakeWatch::take(JointWatch& joint, double position, bool off) const {
   if (!joint.known) joint.trailing = position;
   joint.trailing += catching_up_ * (position - joint.trailing);

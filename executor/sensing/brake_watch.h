@@ -30,6 +30,9 @@ class BrakeWatch {
   /// @param off bit i: and its motor has no power
   void update(const JointVector& measured, std::uint32_t fresh, std::uint32_t off);
 
+  /// Its encoder has jumped, and it has not moved. Before the update() of the same answers.
+  void shift(int joint, double by);
+
   /// The first joint whose drive is off and that has moved further than a brake lets it.
   [[nodiscard]] std::optional<BrakeSlip> slip() const;
   /// Bit i: whether joint i's brake holds is not known. Its drive never said that it is off, or it

@@ -153,11 +153,13 @@ std::string following_error(const Ending& e, const Joint& joint) {
 }
 
 // What was seen of the brakes once the run had ended for another reason.
-std::string after_the_end(const Ending& e, const Cell& cell) {
+std::string after_the_end(const Ending& e, const Cell& cell, const std::string& arm_fault_text) {
   std::string text;
   if (e.slip.joint >= 0 && e.reason != EndReason::kBrakeFailed) {
     text = "; then " + describe(e.slip, cell);
   }
+  const std::string held = describe(e.hold, e.arm_fault, arm_fault_text);
+  if (!held.empty()) text += "; it was " + held;
   const std::size_t joints = cell.robot.joints.size();
   if (joints > 0 && e.brakes_unwatched == (1U << joints) - 1U) {
     return text + "; for want of answers nobody could watch whether a brake holds";
@@ -351,9 +353,25 @@ std::string describe(const BrakeSlip& slip, const Cell& cell) {
                 slip.moved, joint_unit(joint), slip.bound);
 }
 
+std::string describe(Hold hold, const ArmFault& fault, const std::string& arm_fault_text) {
+  const std::string cause = fault.kind == ArmFaultKind::kNone ? "the arm's drives are not enabled"
+                                                              : arm_fault(fault, arm_fault_text);
+  switch (hold) {
+    case Hold::kNone:
+      return {};
+    case Hold::kHeld:
+      return "held under power until it was told to stop";
+    case Hold::kLost:
+      return "held under power, and is not any more: " + cause;
+    case Hold::kRefused:
+      return "not held under power: " + cause;
+  }
+  return {};
+}
+
 std::string describe(const Ending& e, const Plan& plan, const Cell& cell,
                      const std::string& arm_fault_text) {
-  return why(e, plan, cell, arm_fault_text) + after_the_end(e, cell);
+  return why(e, plan, cell, arm_fault_text) + after_the_end(e, cell, arm_fault_text);
 }
 
 }  // namespace tenon::executor

@@ -22,8 +22,9 @@ struct Ending {
   int step = -1;  ///< that was running, for the reasons about joints
   Transition transition{};
   ArmFault arm_fault{};
-  bool disable_confirmed = true;       ///< false: the arm never said that it is disabled
-  BrakeSlip slip{};                    ///< seen after the drives went off, whatever ended the run
+  bool disable_confirmed = true;  ///< false: the arm never said that it is disabled
+  BrakeSlip slip{};               ///< seen after the drives went off, whatever ended the run
+  Hold hold = Hold::kNone;        ///< of an arm whose brake slips; arm_fault says what ended it
   std::uint32_t brakes_unwatched = 0;  ///< bit i: nobody could see whether joint i's brake holds
 };
 
@@ -34,6 +35,10 @@ struct Ending {
 
 /// "joint z moved by 0.0062 m with the drives off, at most 0.0005: its brake does not hold"
 [[nodiscard]] std::string describe(const BrakeSlip& slip, const Cell& cell);
+
+/// What came of holding it: "held under power until it was told to stop"; empty where nothing did.
+[[nodiscard]] std::string describe(Hold hold, const ArmFault& fault,
+                                   const std::string& arm_fault_text);
 
 /// "step 3: contact where validation never saw it", the deviation of a transition.
 [[nodiscard]] std::string describe(const Transition& transition);

@@ -101,6 +101,20 @@ Json json_of(const CanBusStatus& bus) {
           {"overruns", bus.overruns}};
 }
 
+const char* name_of(Hold hold) {
+  switch (hold) {
+    case Hold::kNone:
+      return "none";
+    case Hold::kHeld:
+      return "held";
+    case Hold::kLost:
+      return "lost";
+    case Hold::kRefused:
+      return "refused";
+  }
+  return "?";
+}
+
 // What a run of a plan and an identification have in common. @param plan whose names messages use
 RunResult common_result(const ControlTask& task, const Plan& plan, const CycleRunner& runner,
                         std::uint64_t records_dropped, const std::string& arm_fault_text) {
@@ -111,6 +125,7 @@ RunResult common_result(const ControlTask& task, const Plan& plan, const CycleRu
   result.message = describe(ending, plan, task.cell(), arm_fault_text);
   result.disable_confirmed = task.finished() && ending.disable_confirmed;
   result.slip = ending.slip;
+  result.hold = ending.hold;
   result.brakes_unwatched = ending.brakes_unwatched;
   result.statistics = runner.statistics();
   result.records_dropped = records_dropped;
@@ -202,6 +217,7 @@ std::string to_json(const RunResult& result, const Cell& cell) {
     json["arm_fault"] = fault_row(result.reason, result.arm_fault)->arm_fault_name;
   }
   json["brake_slip"] = json_of(result.slip, cell);
+  json["hold"] = name_of(result.hold);
   json["brakes_unwatched"] = Json::array();
   for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
     if ((result.brakes_unwatched >> i & 1U) != 0) {
@@ -246,10 +262,15 @@ std::string waiting_line(const CycleRecord& record, const Plan& plan) {
                 displacement_text(plan.steps[step].displacement).c_str());
 }
 
-std::string hold_line(const CycleRecord& record, const Cell& cell) {
-  if (record.state != State::kCatching || record.request != ArmRequest::kEnabled) return {};
-  return describe(record.slip, cell) +
-         "; it is held under power: support it, then stop this program (Ctrl-C)";
+std::string hold_line(const CycleRecord& record, const Cell& cell,
+                      const std::string& arm_fault_text) {
+  if (record.hold == Hold::kNone) return {};
+  if (record.hold == Hold::kHeld) {
+    return describe(record.slip, cell) +
+           "; it is held under power: support it, then stop this program (Ctrl-C)";
+  }
+  return describe(record.slip, cell) + "; it was " +
+         describe(record.hold, record.arm_fault, arm_fault_text);
 }
 
 }  // namespace tenon::executor

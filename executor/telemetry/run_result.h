@@ -22,6 +22,7 @@ struct RunResult {
   std::string message;                           ///< one line
   bool disable_confirmed = false;
   BrakeSlip slip{};                    ///< whatever ended the run
+  Hold hold = Hold::kNone;             ///< of an arm whose brake slips
   std::uint32_t brakes_unwatched = 0;  ///< bit i: of joint i
   std::string task;                    ///< of a plan
   std::string start;
@@ -68,8 +69,11 @@ struct RunResult {
 /// "step  2 waits: +x 0.100 m; Enter runs it, Ctrl-C stops". Of a cycle in which a step waits.
 [[nodiscard]] std::string waiting_line(const CycleRecord& record, const Plan& plan);
 
-/// Of a run that is over but for a joint which its brake does not hold, and which is therefore held
-/// under power until the user stops: what happened, and what to do. Empty for any other cycle.
-[[nodiscard]] std::string hold_line(const CycleRecord& record, const Cell& cell);
+/// Of a run that is over but for a joint which its brake does not hold, and which is therefore to
+/// be held under power until the user stops: what happened and what to do, once power is back, and
+/// what ended it, or that it never came. Empty before that, and for any other run.
+/// @param arm_fault_text what hw says about the record's arm_fault, may be empty
+[[nodiscard]] std::string hold_line(const CycleRecord& record, const Cell& cell,
+                                    const std::string& arm_fault_text = {});
 
 }  // namespace tenon::executor

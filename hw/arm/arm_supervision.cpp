@@ -69,6 +69,9 @@ void ArmSupervision::enter_state(ArmState state, std::int64_t now_ns) noexcept {
 }
 
 void ArmSupervision::raise(const ArmFault& fault) noexcept {
+  const bool of_sensor =
+      fault.kind == ArmFaultKind::kSensorStale || (sensor_node_ != 0 && fault.node == sensor_node_);
+  if (of_sensor && !sensor_relied_on_) return;
   if (state_ != ArmState::kFault) {
     state_ = ArmState::kFault;
     fault_ = fault;

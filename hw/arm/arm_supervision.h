@@ -87,6 +87,8 @@ class ArmSupervision {
   void advance(std::int64_t now_ns, ArmRequest wanted) noexcept;
   /// Once after force_exceeded(): the stop is to leave now.
   [[nodiscard]] bool take_stop() noexcept;
+  /// Faults of the sensor's node are raised only where it is relied on.
+  void rely_on_sensor(bool relied) noexcept { sensor_relied_on_ = relied; }
   /// The force for which all drives are stopped, N; 0: they are not.
   [[nodiscard]] double force_stopped_N() const noexcept { return force_stopped_N_; }
   /// What the drives are asked instead: in a fault, and beyond the limit of the force, they stop,
@@ -117,6 +119,7 @@ class ArmSupervision {
   bool was_enabled_ = false;  ///< since begin()
   ArmFault fault_;
   bool cause_guessed_ = false;  ///< its code is one that the drive had warned of
+  bool sensor_relied_on_ = true;
   double force_stopped_N_ = 0.0;
   bool stop_due_ = false;
   canopen::HeartbeatWatch watch_;

@@ -57,6 +57,7 @@ class CanopenArm : public DeviceArm {
   void command(std::int64_t now_ns, ArmRequest request,
                const JointVector& position) noexcept override;
   void limit_force(const ForceLimit& limit) noexcept override { intake_.limit_force(limit); }
+  void rely_on_sensor(bool relied) noexcept override { supervision_.rely_on_sensor(relied); }
   bool attend(std::int64_t now_ns) noexcept override;
   void wait(std::int64_t at_most_ns) noexcept override { bus_.wait(at_most_ns); }
   [[nodiscard]] ArmState state() const noexcept override { return supervision_.state(); }

@@ -42,6 +42,7 @@ MitArm::MitArm(const Cell& cell, CanBus& bus)
       sensor_bring_up_(sensor_alone(robot_)),
       motor_bring_up_(robot_),
       other_master_(sensor_alone(robot_)),
+      recheck_(robot_),
       motors_(motors_of(robot_)),
       sensor_(open_sensor(robot_.sensor)),
       wrench_intake_(*sensor_.source, robot_.sensor),
@@ -105,6 +106,7 @@ void MitArm::begin(std::int64_t now_ns) {
   granted_ = ArmRequest::kDisabled;
   cycle_open_ = wrench_late_ = false;
   next_heartbeat_ns_ = now_ns;
+  recheck_.restart();
   supervision_.begin(now_ns);
 }
 
@@ -126,6 +128,19 @@ void MitArm::start_cycle(std::int64_t now_ns) noexcept {
   send(canopen::sync_frame());
   if (request) send(*request);
   send_to_motors();
+  check_motors();
+}
+
+// A motor that was reset since its registers were read comes on like any other. Before the arm
+// counts as enabled all are asked again.
+void MitArm::check_motors() noexcept {
+  if (granted_ != ArmRequest::kEnabled) {
+    recheck_.restart();
+  } else if (supervision_.all_on()) {
+    if (const std::optional<CanFrame> question = recheck_.next()) send(*question);
+    if (recheck_.fault()) supervision_.raise(*recheck_.fault());
+  }
+  supervision_.motors_as_set(recheck_.done());
 }
 
 bool MitArm::receive(std::int64_t now_ns, ArmFeedback& feedback) noexcept {
@@ -207,6 +222,7 @@ bool MitArm::take_motor(const CanFrame& frame) noexcept {
     return motor.feedback_id() == frame.id;
   });
   if (found == motors_.end()) return false;
+  if (recheck_.take(frame)) return true;
   if (!found->take_feedback(frame)) {
     ++counters_.malformed_frames;
     return true;

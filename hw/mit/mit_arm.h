@@ -32,6 +32,7 @@
 #include "hw/mit/mit_supervision.h"
 #include "hw/mit/motor_bring_up.h"
 #include "hw/mit/motor_channel.h"
+#include "hw/mit/motor_recheck.h"
 #include "hw/sensors/wrench_intake.h"
 #include "shared/cell/cell.h"
 #include "shared/kinematics/inverse_dynamics.h"
@@ -57,6 +58,7 @@ class MitArm : public DeviceArm {
   void command(std::int64_t now_ns, ArmRequest request,
                const JointVector& position) noexcept override;
   void limit_force(const ForceLimit& limit) noexcept override { limit_ = limit; }
+  void rely_on_sensor(bool relied) noexcept override { supervision_.rely_on_sensor(relied); }
   bool attend(std::int64_t now_ns) noexcept override;
   void wait(std::int64_t at_most_ns) noexcept override { bus_.wait(at_most_ns); }
   [[nodiscard]] ArmState state() const noexcept override { return supervision_.state(); }
@@ -74,6 +76,7 @@ class MitArm : public DeviceArm {
   int drain(std::int64_t now_ns) noexcept;
   void take(const ReceivedFrame& received, std::int64_t now_ns) noexcept;
   [[nodiscard]] bool take_motor(const CanFrame& frame) noexcept;
+  void check_motors() noexcept;
   [[nodiscard]] bool take_wrench(const ReceivedFrame& received) noexcept;
   [[nodiscard]] bool others_own(const CanFrame& frame) const noexcept;
   void decide(ArmRequest request, bool follow, const JointVector& position) noexcept;
@@ -88,6 +91,7 @@ class MitArm : public DeviceArm {
   BringUp sensor_bring_up_;
   MotorBringUp motor_bring_up_;
   OtherMaster other_master_;
+  MotorRecheck recheck_;
   std::vector<MotorChannel> motors_;  ///< of a fixed size: the supervision looks into it
   SensorDevice sensor_;
   WrenchIntake wrench_intake_;

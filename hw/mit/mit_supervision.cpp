@@ -41,6 +41,9 @@ void MitSupervision::enter_state(ArmState state, std::int64_t now_ns) noexcept {
 }
 
 void MitSupervision::raise(const ArmFault& fault) noexcept {
+  const bool of_sensor =
+      fault.kind == ArmFaultKind::kSensorStale || (sensor_node_ != 0 && fault.node == sensor_node_);
+  if (of_sensor && !sensor_relied_on_) return;
   if (state_ == ArmState::kFault) return;
   state_ = ArmState::kFault;
   fault_ = fault;
@@ -140,10 +143,16 @@ void MitSupervision::look_at_motors(ArmRequest asked) noexcept {
   }
 }
 
+bool MitSupervision::all_on() const noexcept {
+  return std::all_of(motors_.begin(), motors_.end(),
+                     [](const MotorChannel& motor) { return motor.on(); });
+}
+
 void MitSupervision::enable(std::int64_t now_ns) noexcept {
   const auto missing = std::find_if(motors_.begin(), motors_.end(),
                                     [](const MotorChannel& motor) { return !motor.on(); });
-  enter_state(missing == motors_.end() ? ArmState::kEnabled : ArmState::kEnabling, now_ns);
+  const bool enabled = missing == motors_.end() && as_set_;
+  enter_state(enabled ? ArmState::kEnabled : ArmState::kEnabling, now_ns);
   if (missing == motors_.end() || now_ns - entered_ns_ <= kEnablingTimeout_ns) return;
   const ArmFaultKind kind =
       missing->faulty() ? ArmFaultKind::kDriveFault : ArmFaultKind::kDriveState;

@@ -41,6 +41,12 @@ class MitSupervision {
 
   [[nodiscard]] ArmState state() const noexcept { return state_; }
   [[nodiscard]] const ArmFault& fault() const noexcept { return fault_; }
+  /// Faults of the sensor's node are raised only where it is relied on.
+  void rely_on_sensor(bool relied) noexcept { sensor_relied_on_ = relied; }
+  /// All motors are on, which is not yet to be enabled.
+  [[nodiscard]] bool all_on() const noexcept;
+  /// And are as bring-up has made them: then the arm is enabled.
+  void motors_as_set(bool as_set) noexcept { as_set_ = as_set; }
   /// The force at which the motors were stopped; 0: they were not.
   [[nodiscard]] double force_stopped_N() const noexcept { return force_stopped_N_; }
 
@@ -80,6 +86,8 @@ class MitSupervision {
   ArmFault fault_;
   ArmState state_ = ArmState::kUnconfigured;
   std::int64_t entered_ns_ = 0;
+  bool sensor_relied_on_ = true;
+  bool as_set_ = false;
   double force_stopped_N_ = 0.0;
   canopen::HeartbeatWatch sensor_watch_;
   std::array<std::uint32_t, kMaxJoints> missing_{};  ///< in a row

@@ -110,6 +110,9 @@ class Arm {
   /// From now on, until the next call. Without effect where the arm or its drives cannot: whoever
   /// calls looks at every wrench all the same.
   virtual void limit_force(const ForceLimit& /*limit*/) noexcept {}
+  /// From now on, until the next call: false where nothing that the arm does needs its sensor, and
+  /// no fault of that is the arm's.
+  virtual void rely_on_sensor(bool /*relied*/) noexcept {}
   /// Takes in what comes between cycles; nothing of it is this cycle's feedback. True: there was
   /// something.
   virtual bool attend(std::int64_t /*now_ns*/) noexcept { return false; }

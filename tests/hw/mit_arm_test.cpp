@@ -14,6 +14,7 @@
 #include "hw/bus_load/bus_load.h"
 #include "hw/bus_load/response_times.h"
 #include "hw/robot_arm/open_arm.h"
+#include "shared/base/text.h"
 #include "shared/config/load.h"
 #include "shared/mit/robot_motors.h"
 #include "sim/cell/bus/virtual_bus.h"
@@ -190,6 +191,43 @@ TEST(MitArm, FiveLostAnswersAreBorneASilentMotorIsNamed) {
   EXPECT_EQ(silent.fault(),
             "motor 3 (arm_3): no feedback (0x013) in 6 cycles in a row, at most 5 are allowed; "
             "check bus load and wiring");
+}
+
+// A reset takes away the mode and the TIMEOUT that bring-up has written, and a motor comes on all
+// the same. Whenever it falls: the motor goes where it is told, or is named.
+TEST(MitArm, AMotorThatIsResetOnItsWayToTheEnabledArmIsNamedOrFollows) {
+  int named = 0;
+  int followed = 0;
+  for (const int node : {1, 4, 6}) {
+    for (double at_s = 0.05; at_s < 2.0; at_s += 0.05) {
+      const std::string reset = format("node-reset:node=%d,time_s=%.2f", node, at_s);
+      Bench bench(mit6(), mit6(), {reset});
+      if (!bench.enable()) {
+        EXPECT_NE(bench.fault().find(format("motor %d (arm_%d): ", node, node)), std::string::npos)
+            << reset << ": " << bench.fault();
+        ++named;
+        continue;
+      }
+      const auto joint = static_cast<std::size_t>(node - 1);
+      const double start = bench.target[joint];
+      for (int i = 0; i < 50 && bench.arm.state() == ArmState::kEnabled; ++i) {
+        bench.target[joint] = start + 0.02 * i / 50.0;
+        bench.cycle();
+      }
+      bench.cycles(100);
+      if (bench.arm.state() == ArmState::kFault) {
+        EXPECT_NE(bench.fault().find(format("motor %d (arm_%d): ", node, node)), std::string::npos)
+            << reset << ": " << bench.fault();
+        ++named;
+        continue;
+      }
+      EXPECT_NEAR(bench.world.truth().drives[joint].position, start + 0.0196, 3e-3) << reset;
+      ++followed;
+    }
+  }
+  EXPECT_GT(named, 0);
+  EXPECT_GT(followed, 0);
+  std::printf("%d named, %d followed\n", named, followed);
 }
 
 // Three or four cycles of 4 ms without a command, of which a watchdog of 12 ms bears two.

@@ -32,6 +32,7 @@ class TamperedArm final : public Arm {
     arm_.command(now_ns, request, tampered);
   }
   void limit_force(const ForceLimit& limit) noexcept override { arm_.limit_force(limit); }
+  void rely_on_sensor(bool relied) noexcept override { arm_.rely_on_sensor(relied); }
   bool attend(std::int64_t now_ns) noexcept override { return arm_.attend(now_ns); }
   void wait(std::int64_t at_most_ns) noexcept override { arm_.wait(at_most_ns); }
   [[nodiscard]] ArmState state() const noexcept override { return arm_.state(); }
