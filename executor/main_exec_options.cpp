@@ -97,8 +97,8 @@ void check_outputs(const Options& options) {
                        ": listens for an arm that would have to call; give slcan://HOST:PORT");
     }
     if (options.lcm_url != "none") {
-      check_lcm_url(options.lcm_url);
       check_lcm_publishes(options.lcm_url);
+      check_lcm_url(options.lcm_url);
     }
     check_writable(options.black_box);
   }

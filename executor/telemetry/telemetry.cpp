@@ -31,8 +31,8 @@ TelemetryOutputs open_telemetry(const std::string& url, const std::filesystem::p
                                 std::vector<std::string>& warnings) {
   TelemetryOutputs outputs;
   if (url != "none") {
-    check_lcm_url(url);
     check_lcm_publishes(url);
+    check_lcm_url(url);
     const bool routed = has_multicast_route(url);
     auto network = routed ? std::make_shared<lcm::LCM>(url) : nullptr;
     if (network != nullptr && network->good()) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -70,15 +71,26 @@ std::optional<sockaddr_in> group_of(const std::string& network) {
   return group;
 }
 
-// NAME=VALUE&..., of multicast. @return the first one that is none
-std::optional<std::string> bad_option(std::string_view options) {
+bool is_option_of_multicast(std::string_view option, std::string_view value) {
+  return (option.starts_with("ttl=") && number_of<std::uint8_t>(value)) ||
+         (option.starts_with("recv_buf_size=") && number_of<std::uint32_t>(value));
+}
+
+// None but those of reading: LCM takes mode=w for a log that is to be written, and empties it.
+bool is_option_of_a_log(std::string_view option, std::string_view value) {
+  if (option.starts_with("start_timestamp=")) return number_of<std::int64_t>(value).has_value();
+  const auto speed = number_of<double>(value);
+  return option.starts_with("speed=") && speed && std::isfinite(*speed) && *speed > 0.0;
+}
+
+// NAME=VALUE&... @return the first one that is none
+std::optional<std::string> bad_option(std::string_view options,
+                                      bool (*good)(std::string_view, std::string_view)) {
   while (!options.empty()) {
     const std::string_view option = options.substr(0, options.find('&'));
     options.remove_prefix(std::min(options.size(), option.size() + 1));
     const std::string_view value = option.substr(std::min(option.size(), option.find('=') + 1));
-    const bool good = (option.starts_with("ttl=") && number_of<std::uint8_t>(value)) ||
-                      (option.starts_with("recv_buf_size=") && number_of<std::uint32_t>(value));
-    if (!good) return std::string(option);
+    if (!good(option, value)) return std::string(option);
   }
   return std::nullopt;
 }
@@ -92,12 +104,18 @@ void check_lcm_url(const std::string& url) {
       throw InputError("--lcm-url " + url + ": '" + parts->network +
                        "' must be a multicast group and a port, as 239.255.76.67:7667");
     }
-    const std::optional<std::string> bad = bad_option(parts->options);
+    const std::optional<std::string> bad = bad_option(parts->options, is_option_of_multicast);
     if (!bad) return;
     throw InputError("--lcm-url " + url + ": '" + *bad +
                      "' must be ttl=0..255 or recv_buf_size=BYTES");
   }
-  if (parts && parts->provider == "file" && !parts->network.empty()) return;
+  if (parts && parts->provider == "file" && !parts->network.empty()) {
+    const std::optional<std::string> bad = bad_option(parts->options, is_option_of_a_log);
+    if (!bad) return;
+    throw InputError("--lcm-url " + url + ": '" + *bad +
+                     "' must be speed=N, a number above 0 (1 as it was, 1000 at once), or "
+                     "start_timestamp=N, whole microseconds since 1970");
+  }
   if (parts && parts->provider == "memq" && parts->network.empty()) return;
   throw InputError("--lcm-url " + url +
                    ": not an LCM URL; give udpm://ADDRESS:PORT?ttl=N, file://FILE or memq://");

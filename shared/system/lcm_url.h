@@ -7,7 +7,8 @@
 namespace tenon {
 
 /// @throws InputError unless it is udpm:// or mpudpm:// with a multicast address and a port (either
-/// may be left out) and options that LCM has, file://PATH, or memq://
+/// may be left out) and options that LCM has, file://PATH with those of reading a log, or
+/// memq://
 void check_lcm_url(const std::string& url);
 
 /// A log file is no place to publish to.

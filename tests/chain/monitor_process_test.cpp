@@ -66,6 +66,24 @@ TEST(MonitorProcess, ALogThatIsAPipeOrADeviceIsRefusedWithoutWaiting) {
   }
 }
 
+// LCM itself takes mode=w for a log to write, and empties it.
+TEST(MonitorProcess, ALogIsNeitherEmptiedNorPlayedAtASpeedThatIsNone) {
+  const ScratchFolder folder;
+  const std::string log = folder.path() / "log";
+  {
+    executor::EventLog written(log);
+    written.add(1, executor::kRunChannel, summary_that_says("done"));
+  }
+  const std::string before = folder.get("log");
+  for (const std::string option : {"mode=w", "mode=a", "mode=r", "sped=4", "speed=nan", "speed=inf",
+                                   "speed=-1", "speed=0", "speed=abc", "speed="}) {
+    expect_refused(folder,
+                   {{executable("tenon-monitor"), "--lcm-url", "file://" + log + "?" + option},
+                    {"'" + option + "'", "speed=", "start_timestamp="}});
+    EXPECT_EQ(folder.get("log"), before) << option;
+  }
+}
+
 /// The program itself, no more the fork of its parent, which may catch signals of its own.
 bool catches(pid_t pid, int signal) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/status");

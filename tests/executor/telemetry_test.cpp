@@ -180,7 +180,8 @@ TEST(Telemetry, ALogThatCannotBeWrittenIsBadInput) {
 TEST(LcmUrl, ASlipOfThePenIsNoMissingRoute) {
   for (const char* good :
        {"udpm://239.255.76.67:7667?ttl=0", "udpm://", "udpm://:7000", "memq://", "udpm://239.1.2.3",
-        "udpm://?recv_buf_size=65536&ttl=1", "file://run.lcmlog?mode=w"}) {
+        "udpm://?recv_buf_size=65536&ttl=1", "file://run.lcmlog", "file://run.lcmlog?speed=0.5",
+        "file://run.lcmlog?start_timestamp=1700000000000000&speed=4"}) {
     EXPECT_NO_THROW(check_lcm_url(good)) << good;
   }
   for (const char* bad :
@@ -188,7 +189,9 @@ TEST(LcmUrl, ASlipOfThePenIsNoMissingRoute) {
         "udpm://10.0.0.1:7667", "udpm://239.255.76.67:0", "udpm://239.255.76.67:7x",
         "udpm://239.255.76:7667", "file://", "memq://x", "udpm://host:7667",
         "udpm://239.255.76.67:7667?tll=0", "udpm://239.255.76.67:7667?ttl=256",
-        "udpm://239.255.76.67:7667?ttl=", "udpm://239.255.76.67:7667?ttl=0&x"}) {
+        "udpm://239.255.76.67:7667?ttl=", "udpm://239.255.76.67:7667?ttl=0&x",
+        "file://run.lcmlog?sped=4", "file://run.lcmlog?speed=4&mode=r",
+        "file://run.lcmlog?start_timestamp=1.5", "file://run.lcmlog?start_timestamp="}) {
     EXPECT_THROW(check_lcm_url(bad), InputError) << bad;
     std::vector<std::string> warnings;
     EXPECT_THROW((void)open_telemetry(bad, "", warnings), InputError) << bad;

@@ -190,7 +190,7 @@ class Test:
         self.check(str(logs[0]) in terminal.raw.decode(errors="replace"), "does not say where, once it has ended")
         terminal.close()
         for log in logs:
-            command = [self.arguments.monitor, "--lcm-url", f"file://{log}?speed=0"]
+            command = [self.arguments.monitor, "--lcm-url", f"file://{log}?speed=1000"]
             lines = subprocess.run(command, capture_output=True, text=True, check=False)
             self.check(lines.returncode == 0 and f"failed: {FAULT}" in lines.stdout, f"not replayed: {lines}")
             self.check("\x1b" not in lines.stdout, "a pipe gets escapes")
