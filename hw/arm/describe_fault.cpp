@@ -6,6 +6,7 @@
 
 #include "hw/arm/arm_supervision.h"
 #include "hw/arm/bring_up.h"
+#include "hw/arm/cob_ids.h"
 #include "hw/arm/describe_sensor.h"
 #include "hw/arm/node_settings.h"
 #include "hw/arm/saturation_fault.h"
@@ -234,6 +235,7 @@ const char* master_frame_name(std::uint32_t cob_id, const Robot& robot) {
   if (cob_id == tenon::canopen::kNmt) return "NMT command";
   if (cob_id == tenon::canopen::kSync) return "SYNC";
   if (cob_id == robot.sensor.request_id) return "what asks the force/torque sensor";
+  if (cob_id == kStopCobId) return "stop of all drives";
   if (cob_id >= tenon::canopen::kHeartbeat) return "heartbeat of the master's node";
   return cob_id >= tenon::canopen::kSdoRequest ? "SDO download" : "setpoint of a drive";
 }
