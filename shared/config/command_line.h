@@ -98,8 +98,8 @@ inline void parse(CLI::App& app, int argc, char** argv) {
 
 /// What was printed has arrived; else said, and no success.
 inline int with_output(const char* program, int status) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
-  std::fprintf(stderr, "%s: standard output could not be written whole\n", program);
+  if (output_arrived()) return status;
+  std::fprintf(stderr, "%s: %s\n", program, kOutputLost);
   return status == 0 ? 1 : status;
 }
 
@@ -107,6 +107,7 @@ inline int with_output(const char* program, int status) {
 template <typename Work>
 int run_main(const char* program, const Work& work) noexcept {
   try {
+    occupy_standard_streams();
     survive_full_disks();
     return with_output(program, work());
   } catch (const CommandLineAnswered&) {

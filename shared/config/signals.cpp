@@ -1,6 +1,15 @@
 #include "shared/config/signals.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "shared/base/error.h"
 
 namespace tenon {
 namespace {
@@ -34,5 +43,18 @@ void stop_on_signals(std::atomic<bool>& stop) {
 }
 
 void survive_full_disks() { (void)std::signal(SIGXFSZ, SIG_IGN); }
+
+void occupy_standard_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+    // For reading alone: what is printed fails there, and is told as lost. The lowest number that
+    // is free is this one.
+    if (::open("/dev/null", O_RDONLY) == descriptor) continue;
+    throw InputError("a standard stream is closed, and /dev/null cannot be opened in its place: " +
+                     std::string(std::strerror(errno)) + "; start it with standard streams");
+  }
+}
+
+bool output_arrived() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 }  // namespace tenon

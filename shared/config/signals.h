@@ -1,5 +1,6 @@
 #pragma once
-// What the programs do about signals. Set-up code; once a program.
+// What the programs do about signals, and about the standard streams that they are started with.
+// Set-up code; once a program.
 //
 // Until stop_on_signals(), signals end a program at once as they always do: nothing moves yet, and
 // whatever it waits for, a file or a connection, it need not wait on.
@@ -16,5 +17,14 @@ void stop_on_signals(std::atomic<bool>& stop);
 
 /// A write beyond the limit of a file's size fails like one to a full disk, and ends nothing.
 void survive_full_disks();
+
+/// Of descriptors 0, 1 and 2, those that are closed take nothing from now on and give nothing. A
+/// bus or a file would get their numbers else, and with them what is printed.
+/// @throws InputError where /dev/null cannot be opened
+void occupy_standard_streams();
+
+/// All that was printed so far has arrived.
+[[nodiscard]] bool output_arrived();
+inline constexpr const char* kOutputLost = "standard output could not be written whole";
 
 }  // namespace tenon
