@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "executor/dry_run/dry_run.h"
@@ -64,11 +65,15 @@ int identify(const Options& options, const Cell& cell) {
   run.run();
   std::optional<Finding> finding;
   if (task.ending().reason == EndReason::kMeasured) finding = identification->finding();
-  if (finding && !finding->file.empty()) write_file(options.identify_friction, finding->file);
   // Its first line is the result's message.
   if (finding) std::fputs(finding->report.substr(finding->report.find('\n') + 1).c_str(), stdout);
-  return run.conclude(
-      gather_result(task, finding, run.runner(), run.records_dropped(), run.arm_fault_text()));
+  RunResult result =
+      gather_result(task, finding, run.runner(), run.records_dropped(), run.arm_fault_text());
+  if (finding && !finding->file.empty()) {
+    result.records.push_back(
+        write_whole("identify_friction", options.identify_friction, finding->file));
+  }
+  return run.conclude(std::move(result));
 }
 
 int execute(const Options& options) {

@@ -1,6 +1,7 @@
 #include "executor/main_exec_output.h"
 
 #include <cstdio>
+#include <exception>
 
 #include "executor/dry_run/dry_run_report.h"
 #include "hw/bus_load/bus_load.h"
@@ -71,6 +72,16 @@ void write_json(const std::string& file, const std::string& json) {
   } else if (!file.empty()) {
     write_file(file, json);
   }
+}
+
+RecordReport write_whole(const std::string& name, const std::string& file,
+                         const std::string& text) {
+  try {
+    write_json(file, text);
+  } catch (const std::exception& error) {
+    return {name, file, 0, 1, error.what()};
+  }
+  return {name, file, 1, 0, ""};
 }
 
 void report_dry_run(const std::string& json_file, const DryRun& run, const Plan& plan,

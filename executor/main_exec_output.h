@@ -9,6 +9,7 @@
 #include "executor/telemetry/run_result.h"
 #include "shared/cell/cell.h"
 #include "shared/plan/plan.h"
+#include "shared/system/record_file.h"
 
 namespace tenon::executor {
 
@@ -49,6 +50,11 @@ void print_closing(const RunResult& result);
 /// To a file, or to standard output for "-"; nowhere where no name is given.
 /// @throws InputError where the file cannot be written
 void write_json(const std::string& file, const std::string& json);
+
+/// The same, of a run that is over: a file that cannot be written ends nothing any more.
+/// @param name of the option that asked for it, as in "identify_friction"
+[[nodiscard]] RecordReport write_whole(const std::string& name, const std::string& file,
+                                       const std::string& text);
 
 /// The table, and the JSON; the JSON alone where it goes to standard output.
 void report_dry_run(const std::string& json_file, const DryRun& run, const Plan& plan,

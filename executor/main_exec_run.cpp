@@ -178,14 +178,11 @@ int TaskRun::conclude(RunResult result) {
   result.bus = bus().status();
   telemetry_.publish_summary(result, task_.record());
   result.unpublished = telemetry_.failures();
-  result.records = close_records();
+  for (RecordReport& report : close_records()) result.records.push_back(std::move(report));
   print_closing(result);
   keep_black_box(result);
-  try {
-    write_json(options_.json, to_json(result, task_.cell()));
-  } catch (const std::exception& error) {
-    result.records.push_back({"json", options_.json, 0, 1, error.what()});
-  }
+  const RecordReport json = write_whole("json", options_.json, to_json(result, task_.cell()));
+  if (!json.whole()) result.records.push_back(json);
   if (const std::uint64_t axes = arm_->counters().unbraked_axes; axes > 0) {
     std::fprintf(stderr,
                  "tenon-exec: told to stop, %s did not brake and lost voltage; see to the drives "
