@@ -15,6 +15,7 @@
 #include "hw/can/recording_bus.h"
 #include "hw/robot_arm/open_arm.h"
 #include "shared/base/error.h"
+#include "shared/config/signals.h"
 #include "shared/system/monotonic_clock.h"
 
 namespace tenon::executor {
@@ -180,6 +181,7 @@ int TaskRun::conclude(RunResult result) {
   result.unpublished = telemetry_.failures();
   for (RecordReport& report : close_records()) result.records.push_back(std::move(report));
   print_closing(result);
+  result.output_lost = !output_arrived();
   keep_black_box(result);
   const RecordReport json = write_whole("json", options_.json, to_json(result, task_.cell()));
   if (!json.whole()) result.records.push_back(json);

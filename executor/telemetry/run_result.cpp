@@ -11,6 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kOutputLost = "; standard output could not be written whole";
+
 Json json_of(const Vector6& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
 
 Json json_of(const Histogram& histogram) {
@@ -158,7 +160,7 @@ bool RunResult::ended_badly() const {
 int RunResult::exit_status() const {
   const bool whole = std::all_of(records.begin(), records.end(),
                                  [](const RecordReport& report) { return report.whole(); });
-  return exit_code == 0 && !whole ? 1 : exit_code;
+  return exit_code == 0 && (!whole || output_lost) ? 1 : exit_code;
 }
 
 std::string RunResult::losses() const {
@@ -203,7 +205,7 @@ RunResult gather_result(const ControlTask& task, const std::optional<Finding>& f
 std::string to_json(const RunResult& result, const Cell& cell) {
   Json json = {{"status", result.exit_code == 0 ? "done" : "failed"},
                {"reason", to_string(result.reason)},
-               {"message", result.message},
+               {"message", result.message + (result.output_lost ? kOutputLost : "")},
                {"exit_code", result.exit_status()},
                {"disable_confirmed", result.disable_confirmed},
                {"task", result.task},

@@ -41,6 +41,7 @@ struct RunResult {
   CanBusStatus bus;
   std::uint64_t unpublished = 0;      ///< messages that LCM could not send
   std::vector<RecordReport> records;  ///< of every file that was written along
+  bool output_lost = false;           ///< of what was printed, not all has arrived
 
   /// It went wrong in a way that the last cycles may explain: neither as it should, nor on request.
   [[nodiscard]] bool ended_badly() const;
