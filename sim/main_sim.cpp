@@ -21,6 +21,7 @@
 #include "hw/can/open_bus.h"
 #include "hw/can/slcan_server.h"
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
 #include "shared/config/files.h"
@@ -178,14 +179,20 @@ std::unique_ptr<sim::StepListener> listen_for_steps(const CommandLine& line,
       line.lcm_url, [&phases](int step) { phases.begin_step(step, monotonic_now_ns()); });
 }
 
-/// A fault that never struck proves nothing: that is said.
+/// A fault that never struck proves nothing: that is said. @param on_ns when the cell was switched
+/// on, on the clock of `phases`
 void tell_who_waited_in_vain(const CommandLine& line, const std::vector<sim::Fault>& faults,
-                             const sim::FaultPhases& phases) {
+                             const sim::FaultPhases& phases, std::int64_t on_ns, double time_s) {
+  const std::int64_t end_ns = on_ns + static_cast<std::int64_t>(1e9 * time_s);
   for (std::size_t i = 0; i < faults.size(); ++i) {
-    if (sim::begin_ns(faults[i], 0, &phases)) continue;
-    const char* why = faults[i].at_step ? "that step never ran, or --lcm-url brought no word of it"
-                                        : "what it waits for never happened";
-    std::fprintf(stderr, "tenon-sim: --fault %s: never struck: %s\n", line.faults[i].c_str(), why);
+    const std::optional<std::int64_t> begins_ns = sim::begin_ns(faults[i], on_ns, &phases);
+    if (begins_ns && *begins_ns <= end_ns) continue;
+    const std::string why =
+        begins_ns           ? format("its time never came: the cell ran for %.1f s", time_s)
+        : faults[i].at_step ? "that step never ran, or --lcm-url brought no word of it"
+                            : "what it waits for never happened";
+    std::fprintf(stderr, "tenon-sim: --fault %s: never struck: %s\n", line.faults[i].c_str(),
+                 why.c_str());
   }
 }
 
@@ -266,8 +273,9 @@ int simulate(const CommandLine& line) {
   raise_priority();
   stop_on_signals(stop_requested);
   announce(line, uris, buses, view.get());
-  sim::FaultyBus faulty_bus(buses.all(), options.faults, cell_file.robot.master_node,
-                            monotonic_now_ns(), &phases);
+  const std::int64_t on_ns = monotonic_now_ns();
+  sim::FaultyBus faulty_bus(buses.all(), options.faults, cell_file.robot.master_node, on_ns,
+                            &phases);
   const Lateness lateness =
       run(cell, faulty_bus, line.once ? server : nullptr, steps.get(), view.get());
 
@@ -277,7 +285,7 @@ int simulate(const CommandLine& line) {
   truth.late_max_ms = static_cast<double>(lateness.max_ns) * 1e-6;
   truth.frames_lost = buses.all().status().send_failures;
   tell_the_end(truth, view.get());
-  tell_who_waited_in_vain(line, options.faults, phases);
+  tell_who_waited_in_vain(line, options.faults, phases, on_ns, truth.time_s);
   FinalFiles files;
   files.write({"--json", line.json}, sim::truth_json(truth));
   if (truth.solver_messages == 0) return files.conclude("tenon-sim", 0);

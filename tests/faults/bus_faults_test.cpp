@@ -111,7 +111,7 @@ TEST(BusFaults, ADeadSensorIsNamedByItsNodeAtAnyCycle) {
 
 TEST(BusFaults, TheSameSeedStrikesTheSameFramesWhoeverElseDraws) {
   const std::string spec = "drop:time_s=3,duration_s=100,probability=0.001,seed=";
-  const std::string other_draws = "duplicate:node=99,time_s=3,duration_s=100,probability=0.5";
+  const std::string other_draws = "duplicate:id=0x7E5,time_s=3,duration_s=100,probability=0.5";
   FaultyRun once({spec + "8"});
   FaultyRun again({spec + "8", other_draws});
   FaultyRun other({spec + "9"});

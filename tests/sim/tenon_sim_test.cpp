@@ -158,6 +158,25 @@ TEST_F(TenonSimTest, AFaultWaitsForTheStepThatTheExecutorsTelemetryTells) {
   EXPECT_EQ(truth["events"].dump().find("fault node-reset, node 1"), std::string::npos);
 }
 
+TEST_F(TenonSimTest, AFaultWhoseTimeNeverComesIsNamed) {
+  SimProcess sim(folder.path(), "2",
+                 {"--fault", "brake-failure:node=3,time_s=5000", "--fault",
+                  "torque-loss:node=3,share=0.5,time_s=0.001"});
+  const int connection = connect_to(sim);
+  ask(connection, "O\rt60284000100000000000\r", "t5828");
+  close(connection);
+  sim.process().send(SIGINT);
+  EXPECT_EQ(sim.process().wait(), 0);
+  const std::string said = sim.process().err();
+  EXPECT_EQ(
+      said.rfind("tenon-sim: --fault brake-failure:node=3,time_s=5000: never struck: its time "
+                 "never came: the cell ran for ",
+                 0),
+      0U)
+      << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+}
+
 TEST_F(TenonSimTest, AStepThatNobodyWouldTellIsRefused) {
   const std::vector<std::string> cell = {
       tests::executable("tenon-sim"), "--cell", tests::gantry_cell_file(),   "--task",

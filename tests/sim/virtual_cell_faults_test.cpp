@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "sim/cell/faults/fault_spec.h"
 #include "sim/cell/virtual_arm/virtual_cell.h"
 #include "tests/sim/literal_cell.h"
 #include "tests/sim/six_axis_cell.h"
@@ -105,8 +106,39 @@ TEST(VirtualCellFaultsTest, AFaultOfANodeThatDoesNotExistIsRefused) {
                                      with(FaultKind::kBrakeFailure, 9, 0.0));
             }),
             "fault brake-failure: node 9 is neither a joint nor the sensor of robot gantry");
-  // A fault of the bus is no device's.
-  EXPECT_NO_THROW(VirtualCell(gantry_cell(), wall_task(), with(FaultKind::kDrop, 9, 0.0)));
+  EXPECT_EQ(tests::refusal([] {
+              const VirtualCell cell(gantry_cell(), wall_task(), with(FaultKind::kDrop, 9, 0.0));
+            }),
+            "fault drop: node 9 is neither a joint, nor the sensor, nor the master of robot "
+            "gantry; see its robot file");
+}
+
+// Joints 1 to 3 slide, 4 is the sensor, 127 the master.
+TEST(VirtualCellFaultsTest, AFaultThatCanStrikeNothingIsRefused) {
+  for (const auto& [spec, why] : {
+           std::pair{"drop:node=77", "nor the master"},
+           std::pair{"queue-full:node=77", "nor the master"},
+           std::pair{"frozen-drive:node=4", "node 4 is the force/torque sensor"},
+           std::pair{"brake-failure:node=4", "node 4 is the force/torque sensor"},
+           std::pair{"stale-force:node=1", "node 1 is the joint"},
+           std::pair{"encoder-jump:node=1,jump_rad=0.1", "slides; give jump_m"},
+           std::pair{"drop:id=answers,node=127", "node 127 is the master"},
+           std::pair{"drop:id=emcy,node=127", "node 127 is the master"},
+           std::pair{"drop:id=sync,node=1", "node 1 sends no sync"},
+           std::pair{"drop:id=rpdo,node=4", "there is no rpdo"},
+       }) {
+    VirtualCell::Options options;
+    options.faults = {parse_fault(spec)};
+    const std::string line =
+        tests::refusal([&] { const VirtualCell cell(gantry_cell(), wall_task(), options); });
+    EXPECT_NE(line.find(why), std::string::npos) << spec << ": " << line;
+  }
+  VirtualCell::Options turning;
+  turning.faults = {parse_fault("encoder-jump:node=4,jump_m=0.1")};
+  turning.joints = JointVector{0.3, -0.6, 1.1, -0.4, 0.9, 0.5, 0.0};
+  const std::string line =
+      tests::refusal([&] { const VirtualCell cell(six_axis_cell(), empty_task(), turning); });
+  EXPECT_NE(line.find("turns; give jump_rad"), std::string::npos) << line;
 }
 
 TEST(VirtualCellFaultsTest, ASixAxisArmWhoseShoulderBrakeFailsFallsWithAllThatItCarries) {

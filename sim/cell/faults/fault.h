@@ -122,6 +122,9 @@ enum class FaultPhase : std::uint8_t {
 };
 inline constexpr std::size_t kFaultPhases = 5;
 
+/// What the value of kEncoderJump is in, where whoever wrote it said so.
+enum class FaultUnit : std::uint8_t { kAny = 0, kMetre = 1, kRadian = 2 };
+
 struct Fault {
   FaultKind kind = FaultKind::kDrop;
   std::uint8_t node = 0;
@@ -135,6 +138,7 @@ struct Fault {
   std::optional<int> at_step = std::nullopt;    ///< of the plan, from 0; unset: for no step
   FrameKind frames = FrameKind::kAny;           ///< of those that choose frames
   std::uint32_t cob_id = 0;                     ///< of FrameKind::kOne
+  FaultUnit unit = FaultUnit::kAny;
 };
 
 }  // namespace tenon::sim

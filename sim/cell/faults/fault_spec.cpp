@@ -194,6 +194,8 @@ class Parser {
                          ? static_cast<double>(integer(key, value, 1, 0xFFFF))
                          : number(key, value, kind.value_min, kind.value_max);
       value_given_ = true;
+      if (key == "jump_m") fault_.unit = FaultUnit::kMetre;
+      if (key == "jump_rad") fault_.unit = FaultUnit::kRadian;
     } else {
       refuse(text_, "there is no key '" + key + "'; " + kind.name + " takes " + keys_of(kind));
     }

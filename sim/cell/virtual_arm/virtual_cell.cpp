@@ -13,6 +13,7 @@
 #include "shared/task/pose_error.h"
 #include "sim/cell/devices/robot_devices.h"
 #include "sim/cell/faults/bus_faults.h"
+#include "sim/cell/faults/fault_check.h"
 #include "sim/cell/faults/fault_spec.h"
 #include "sim/cell/virtual_arm/arm_body.h"
 #include "sim/cell/virtual_arm/cell_watch.h"
@@ -52,19 +53,12 @@ std::size_t steps_in_cycle(const Robot& robot, const VirtualCell::Options& optio
 
 /// Those of devices, the earliest last.
 std::vector<Fault> pending_faults(const Robot& robot, const std::vector<Fault>& all) {
+  check_faults(all, robot);
   std::vector<Fault> faults = faults_of_devices(all, robot.master_node);
   for (Fault& fault : faults) {
     if (fault.node == 0 && target_of(fault.kind) == FaultTarget::kSensor) {
       fault.node = robot.sensor.node;
     }
-    const bool of_joint = std::any_of(robot.joints.begin(), robot.joints.end(),
-                                      [&](const Joint& joint) { return joint.node == fault.node; });
-    const bool nobodys = fault.node == 0 && target_of(fault.kind) != FaultTarget::kSensor;
-    const bool of_sensor = fault.node == robot.sensor.node && !robot.sensor.absent();
-    if (of_joint || (of_sensor && !nobodys)) continue;
-    throw InputError(std::string("fault ") + to_string(fault.kind) + ": node " +
-                     std::to_string(fault.node) + " is neither a joint nor the sensor of robot " +
-                     robot.name);
   }
   std::stable_sort(faults.begin(), faults.end(),
                    [](const Fault& a, const Fault& b) { return a.time_s > b.time_s; });

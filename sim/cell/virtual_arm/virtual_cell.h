@@ -48,8 +48,8 @@ class VirtualCell {
     std::int64_t (*stopwatch_ns)() = nullptr;
   };
 
-  /// Allocates. @throws InputError where the cell cannot hold this task, and for faults of nodes
-  /// that it does not have
+  /// Allocates. @throws InputError where the cell cannot hold this task, and for faults
+  /// that can strike nothing of it
   VirtualCell(const Cell& cell, const Task& task, const Options& options);
   VirtualCell(const VirtualCell&) = delete;
   VirtualCell& operator=(const VirtualCell&) = delete;
