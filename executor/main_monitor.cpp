@@ -14,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include "executor/export/log_scan.h"
 #include "executor/main_monitor_export.h"
 #include "executor/main_monitor_screen.h"
 #include "executor/monitor/dashboard.h"
@@ -47,11 +48,20 @@ std::span<const std::uint8_t> bytes_of(const lcm::ReceiveBuffer& buffer) {
   return {static_cast<const std::uint8_t*>(buffer.data), buffer.data_size};
 }
 
-int exit_status(std::uint64_t malformed) {
-  if (malformed == 0) return 0;
-  std::fprintf(stderr, "tenon-monitor: %llu messages could not be decoded\n",
-               static_cast<unsigned long long>(malformed));
-  return 1;
+/// @param lacks of a log that was played to its end: what is missing in it, or nothing
+int exit_status(std::uint64_t malformed, const std::string& lacks) {
+  if (malformed > 0) {
+    std::fprintf(stderr, "tenon-monitor: %llu messages could not be decoded\n",
+                 static_cast<unsigned long long>(malformed));
+  }
+  if (!lacks.empty()) std::fprintf(stderr, "tenon-monitor: %s\n", lacks.c_str());
+  return malformed > 0 || !lacks.empty() ? 1 : 0;
+}
+
+/// LCM passes over what is damaged without a word. @param url of a source that has ended
+std::string what_the_source_lacks(const std::string& url) {
+  const std::string log = lcm_log_of(url);
+  return log.empty() ? "" : log_lacks(log);
 }
 
 // The bytes as they came: LCM's own decoding lets what is malformed throw through its C code.
@@ -81,13 +91,14 @@ struct Lines {
   RunView view;
 };
 
-int print_lines(lcm::LCM& lcm) {
+int print_lines(lcm::LCM& lcm, const std::string& url) {
   Lines lines;
   subscribe(lcm, lines);
   while (!leave_asked && listen(lcm)) {
   }
   std::printf("\n");
-  return exit_status(lines.view.malformed());
+  std::fflush(stdout);
+  return exit_status(lines.view.malformed(), leave_asked ? "" : what_the_source_lacks(url));
 }
 
 // --- dashboard ------------------------------------------------------------------------------
@@ -133,7 +144,8 @@ class Dashboard {
     say(recording_.end());
     screen_.reset();
     if (!view_.notice.empty()) std::printf("%s\n", view_.notice.c_str());
-    return exit_status(model_.malformed);
+    return exit_status(model_.malformed,
+                       view_.source_ended ? what_the_source_lacks(view_.source) : "");
   }
 
  private:
@@ -175,7 +187,7 @@ int watch(const Options& options) {
   if (!lcm.good()) throw InputError("--lcm-url " + options.url + ": cannot be opened");
   stop_on_signals(leave_asked);
   auto screen = options.lines ? nullptr : Screen::open();
-  if (screen == nullptr) return print_lines(lcm);
+  if (screen == nullptr) return print_lines(lcm, options.url);
   Dashboard dashboard(options, std::move(screen));
   subscribe(lcm, dashboard);
   return dashboard.run(lcm);
@@ -211,7 +223,8 @@ int main(int argc, char** argv) {
     app.footer(
         "Exit status:\n"
         "  0  all that came, or all of the log, was shown or written\n"
-        "  1  messages could not be decoded; export: the log is damaged or breaks off\n"
+        "  1  messages could not be decoded, or a log is damaged, breaks off or ends before its "
+        "run\n"
         "  2  bad input\n\n"
         "Examples:\n"
         "  tenon-monitor\n"

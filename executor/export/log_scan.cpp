@@ -41,10 +41,12 @@ class Scanner {
   }
   void look_at(const tenon::run_setup_t& m) {
     if (m.sequence == 0) begin();
+    scan_.open = m.sequence == 0 || !run_.ended;
     if (!run_.setup) run_.setup = m;
   }
   void look_at(const tenon::cycle_state_t& m) {
     if (m.sequence == 0) begin();
+    scan_.open = m.sequence == 0 || !run_.ended;
     if (run_.cycles == 0) {
       run_.start_ns = m.monotonic_ns;
       run_.start_us = m.utime;
@@ -53,7 +55,10 @@ class Scanner {
     ++run_.cycles;
     run_.last_ns = std::max(run_.last_ns, m.monotonic_ns);
   }
-  void look_at(const tenon::run_summary_t& /*m*/) { run_.ended = true; }
+  void look_at(const tenon::run_summary_t& /*m*/) {
+    run_.ended = true;
+    scan_.open = false;
+  }
   template <typename Message>
   void look_at(const Message& /*m*/) {}
 
@@ -97,7 +102,10 @@ std::int64_t LoggedRun::since_ns(std::int64_t monotonic_ns) const {
   return static_cast<std::int64_t>(std::min(since, kMost));
 }
 
-LogScan scan_log(const std::filesystem::path& file) {
+namespace {
+
+/// Whatever it holds.
+LogScan scan_events(const std::filesystem::path& file) {
   EventFile events(file);
   Scanner scanner;
   std::string damage;
@@ -109,11 +117,28 @@ LogScan scan_log(const std::filesystem::path& file) {
   LogScan scan = scanner.finish();
   scan.damage = std::move(damage);
   scan.breaks_off = events.breaks_off();
+  return scan;
+}
+
+}  // namespace
+
+LogScan scan_log(const std::filesystem::path& file) {
+  LogScan scan = scan_events(file);
   if (scan.runs.empty()) {
     throw InputError(file.string() +
                      ": holds no cycle of a run; give a log of tenon-exec or tenon-monitor");
   }
   return scan;
+}
+
+std::string log_lacks(const std::filesystem::path& file) {
+  const LogScan scan = scan_events(file);
+  if (!scan.damage.empty()) return scan.damage + "; not all that was logged is shown";
+  if (scan.breaks_off) {
+    return file.string() + ": breaks off within a message; what stands before is shown";
+  }
+  if (scan.open) return file.string() + ": ends before the run does; what it holds is shown";
+  return "";
 }
 
 }  // namespace tenon::executor

@@ -36,9 +36,15 @@ struct LogScan {
   std::uint64_t malformed = 0;  ///< messages of Tenon's channels
   bool breaks_off = false;      ///< the file ends within an event
   std::string damage;           ///< where it is no log any more, one line; empty: nowhere
+  bool open = false;            ///< something of a run came, and not its end
 };
 
 /// @throws InputError where the file cannot be read, is no log, or holds no cycle of a run
 [[nodiscard]] LogScan scan_log(const std::filesystem::path& file);
+
+/// What a log lacks, for who has it played: damage, a broken end, or the end of its last run.
+/// @return one line; empty where nothing is missing
+/// @throws InputError where the file cannot be read, or is no log
+[[nodiscard]] std::string log_lacks(const std::filesystem::path& file);
 
 }  // namespace tenon::executor

@@ -140,6 +140,11 @@ void check_lcm_log(const std::string& url) {
                    " cannot be read: " + (other ? kNoRegularFile : error.message()));
 }
 
+std::string lcm_log_of(const std::string& url) {
+  const std::optional<Parts> parts = parts_of(url);
+  return parts && parts->provider == "file" ? parts->network : "";
+}
+
 bool has_multicast_route(const std::string& url) {
   const std::optional<Parts> parts = parts_of(url);
   if (!parts || !is_multicast(*parts)) return true;

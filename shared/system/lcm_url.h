@@ -19,6 +19,9 @@ void check_lcm_publishes(const std::string& url);
 /// @throws InputError where such a URL names no regular file
 void check_lcm_log(const std::string& url);
 
+/// The log that such a URL has replayed; empty where it is of another kind.
+[[nodiscard]] std::string lcm_log_of(const std::string& url);
+
 /// Whether the kernel knows a way to the multicast group of such a URL; true where it needs none.
 [[nodiscard]] bool has_multicast_route(const std::string& url);
 

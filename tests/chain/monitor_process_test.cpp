@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -81,6 +83,51 @@ TEST(MonitorProcess, ALogIsNeitherEmptiedNorPlayedAtASpeedThatIsNone) {
                    {{executable("tenon-monitor"), "--lcm-url", "file://" + log + "?" + option},
                     {"'" + option + "'", "speed=", "start_timestamp="}});
     EXPECT_EQ(folder.get("log"), before) << option;
+  }
+}
+
+std::vector<std::uint8_t> cycle_of(std::int64_t sequence) {
+  tenon::cycle_state_t cycle{};
+  cycle.sequence = sequence;
+  return bytes_of(cycle);
+}
+
+// LCM itself ends a message before the damage, which begins in the second run.
+TEST(MonitorProcess, ALogThatIsNotWholeIsShownAndSaidToBeSo) {
+  const ScratchFolder folder;
+  {
+    executor::EventLog log(folder.path() / "log");
+    for (int i = 5; i < 10; ++i) log.add(i, executor::kCycleChannel, cycle_of(i));
+    log.add(10, executor::kRunChannel, summary_that_says("first"));
+    for (int i = 0; i < 5; ++i) log.add(20 + i, executor::kCycleChannel, cycle_of(i));
+    log.add(25, executor::kRunChannel, summary_that_says("second"));
+  }
+  const std::string whole = folder.get("log");
+  const std::string sync = "\xED\xA1\xDA\x01";
+  const std::size_t last = whole.rfind(sync);
+  std::string damaged = whole;
+  const std::size_t second = whole.find(sync, whole.find("TENON_RUN"));
+  damaged.replace(whole.find(sync, second + sync.size()), 500, std::string(500, '\0'));
+  struct Log {
+    const char* name;
+    std::string bytes;
+    int status;
+    const char* said;
+  };
+  for (const Log& log :
+       {Log{"whole", whole, 0, ""}, Log{"damaged", damaged, 1, "the file is damaged"},
+        Log{"cut", whole.substr(0, whole.size() - 10), 1, "breaks off within a message"},
+        Log{"early", whole.substr(0, last), 1, "ends before the run does"}}) {
+    SCOPED_TRACE(log.name);
+    const std::string file = folder.put(log.name, log.bytes);
+    const Ended ended =
+        run(folder, {executable("tenon-monitor"), "--lines", "--lcm-url", "file://" + file});
+    EXPECT_EQ(ended.status, log.status);
+    EXPECT_NE(ended.out.find("done: first"), std::string::npos) << ended.out;
+    EXPECT_NE(ended.err.find(log.said), std::string::npos) << ended.err;
+    const std::string mine = "tenon-monitor: ";
+    EXPECT_EQ(ended.err.find(mine) != std::string::npos, log.status == 1) << ended.err;
+    EXPECT_EQ(ended.err.find(mine), ended.err.rfind(mine)) << ended.err;
   }
 }
 
