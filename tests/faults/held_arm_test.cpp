@@ -50,18 +50,18 @@ class HeldArm : public ::testing::Test {
     more.emplace_back("brake-failure:node=3,at=free");
     WholeRun::Options options = with_faults(more);
     options.start = std::string("4");
-    run_ = std::make_unique<WholeRun>(holding_cell(), box_task(), box_plan("4"), options, &lines_);
-    ASSERT_TRUE(run_->prepare());
+    run = std::make_unique<WholeRun>(holding_cell(), box_task(), box_plan("4"), options, &lines);
+    ASSERT_TRUE(run->prepare());
   }
-  [[nodiscard]] State state() const { return run_->controller().state(); }
-  [[nodiscard]] double height_m() const { return run_->result().truth.drives[kHeldAxis].position; }
+  [[nodiscard]] State state() const { return run->controller().state(); }
+  [[nodiscard]] double height_m() const { return run->result().truth.drives[kHeldAxis].position; }
   void to_catching() {
-    for (int i = 0; i < 30'000 && state() != State::kCatching && run_->cycle(); ++i) {
+    for (int i = 0; i < 30'000 && state() != State::kCatching && run->cycle(); ++i) {
     }
     ASSERT_EQ(state(), State::kCatching);
   }
   void cycles(int count) {
-    for (int i = 0; i < count && run_->cycle(); ++i) {
+    for (int i = 0; i < count && run->cycle(); ++i) {
     }
   }
   /// Still held after so many cycles more, where it was after some of the first.
@@ -69,33 +69,33 @@ class HeldArm : public ::testing::Test {
     cycles(200);
     const double at_m = height_m();
     cycles(count);
-    ASSERT_EQ(state(), State::kCatching) << run_->result().reason;
+    ASSERT_EQ(state(), State::kCatching) << run->result().reason;
     EXPECT_NEAR(height_m(), at_m, 1e-4);
-    EXPECT_EQ(run_->result().truth.drives[kHeldAxis].state, "operation enabled");
+    EXPECT_EQ(run->result().truth.drives[kHeldAxis].state, "operation enabled");
   }
   void stop_ends_it() {
-    run_->controller().request_stop();
+    run->controller().request_stop();
     cycles(2000);
-    EXPECT_TRUE(run_->controller().finished());
-    EXPECT_EQ(run_->result().ending.hold, Hold::kHeld);
-    EXPECT_NE(run_->result().reason.find("; it was held under power until it was told to stop"),
+    EXPECT_TRUE(run->controller().finished());
+    EXPECT_EQ(run->result().ending.hold, Hold::kHeld);
+    EXPECT_NE(run->result().reason.find("; it was held under power until it was told to stop"),
               std::string::npos)
-        << run_->result().reason;
-    EXPECT_EQ(lines_.all.size(), 1U);
+        << run->result().reason;
+    EXPECT_EQ(lines.all.size(), 1U);
   }
 
-  Lines lines_{holding_cell()};
-  std::unique_ptr<WholeRun> run_;
+  Lines lines{holding_cell()};
+  std::unique_ptr<WholeRun> run;
 };
 
 // Who stopped the run has not said that something is under the arm.
 TEST_F(HeldArm, TheStopThatEndedTheRunDoesNotEndTheHolding) {
   start({});
   cycles(1500);
-  run_->controller().request_stop();
+  run->controller().request_stop();
   to_catching();
   is_held(2000);
-  EXPECT_EQ(run_->result().ending.reason, EndReason::kBrakeFailed) << run_->result().reason;
+  EXPECT_EQ(run->result().ending.reason, EndReason::kBrakeFailed) << run->result().reason;
   stop_ends_it();
 }
 
@@ -104,7 +104,7 @@ TEST_F(HeldArm, AForceBeyondTheLimitLetsNothingFall) {
   start({"forged-force:time_s=40,force_N=80,duration_s=0.01"});
   to_catching();
   is_held(15'000);
-  EXPECT_GT(run_->result().truth.time_s, 41.0);
+  EXPECT_GT(run->result().truth.time_s, 41.0);
   stop_ends_it();
 }
 
@@ -114,11 +114,11 @@ TEST_F(HeldArm, NoFaultOfTheSensorEndsIt) {
         "emergency:node=4,code=0xFF00,time_s=40", "stale-force:time_s=40,duration_s=3",
         "torn-force:time_s=40,duration_s=3", "frozen-force:time_s=40,duration_s=3"}) {
     SCOPED_TRACE(fault);
-    lines_.all.clear();
+    lines.all.clear();
     start({fault});
     to_catching();
     is_held(15'000);
-    EXPECT_GT(run_->result().truth.time_s, 41.0);
+    EXPECT_GT(run->result().truth.time_s, 41.0);
     stop_ends_it();
   }
 }
@@ -127,23 +127,23 @@ TEST_F(HeldArm, WhatEndsItIsTold) {
   for (const char* fault : {"node-reset:node=1,time_s=40", "emergency:node=1,code=0x3210,time_s=40",
                             "silent-node:node=2,time_s=40"}) {
     SCOPED_TRACE(fault);
-    lines_.all.clear();
+    lines.all.clear();
     start({fault});
     cycles(1500);  // in free air
-    run_->controller().request_stop();
+    run->controller().request_stop();
     to_catching();
     cycles(20'000);
-    ASSERT_TRUE(run_->controller().finished());
-    const WholeRun::Result result = run_->result();
+    ASSERT_TRUE(run->controller().finished());
+    const WholeRun::Result result = run->result();
     EXPECT_EQ(result.ending.reason, EndReason::kBrakeFailed) << result.reason;
     EXPECT_EQ(result.ending.hold, Hold::kLost);
     EXPECT_NE(result.ending.arm_fault.kind, ArmFaultKind::kNone);
     EXPECT_NE(result.reason.find("; it was held under power, and is not any more: arm: "),
               std::string::npos)
         << result.reason;
-    ASSERT_EQ(lines_.all.size(), 2U);
-    EXPECT_NE(lines_.all[0].find("it is held under power: support it"), std::string::npos);
-    EXPECT_NE(lines_.all[1].find("and is not any more"), std::string::npos);
+    ASSERT_EQ(lines.all.size(), 2U);
+    EXPECT_NE(lines.all[0].find("it is held under power: support it"), std::string::npos);
+    EXPECT_NE(lines.all[1].find("and is not any more"), std::string::npos);
   }
 }
 
@@ -151,14 +151,14 @@ TEST_F(HeldArm, WhatEndsItIsTold) {
 TEST_F(HeldArm, WhereItCannotBeThatIsTold) {
   start({"emergency:node=1,code=0x3210,at=free,time_s=0.5"});
   cycles(40'000);
-  ASSERT_TRUE(run_->controller().finished());
-  const WholeRun::Result result = run_->result();
+  ASSERT_TRUE(run->controller().finished());
+  const WholeRun::Result result = run->result();
   EXPECT_EQ(result.ending.reason, EndReason::kArmFault) << result.reason;
   EXPECT_EQ(result.ending.hold, Hold::kRefused);
   EXPECT_GE(result.ending.slip.joint, 0);
-  ASSERT_EQ(lines_.all.size(), 1U);
-  EXPECT_NE(lines_.all[0].find("; it was not held under power: "), std::string::npos)
-      << lines_.all[0];
+  ASSERT_EQ(lines.all.size(), 1U);
+  EXPECT_NE(lines.all[0].find("; it was not held under power: "), std::string::npos)
+      << lines.all[0];
 }
 
 /// When a run without faults watches its brakes.
