@@ -95,6 +95,8 @@ void run_drawn(const Ground& ground, std::uint64_t number, Tally& tally) {
   const double magnitude = threshold * std::pow(10.0, 2.0 * random.uniform() - 1.0);
   FaultKind kind;
   kind.spec = scaled.spec + format("%g", magnitude);
+  const bool turns = robot.joints.front().kind == Joint::Kind::kRevolute;
+  if (jumps && turns) kind.spec.replace(kind.spec.find("jump_m"), 6, "jump_rad");
   Strike strike;
   strike.phase = phase;
   strike.after_s = 0.3 * random.uniform();
