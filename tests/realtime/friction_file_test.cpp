@@ -13,6 +13,7 @@
 #include "tests/support/busy_machine.h"
 #include "tests/support/child_process.h"
 #include "tests/support/places.h"
+#include "tests/support/scratch_folder.h"
 
 namespace tenon::tests {
 namespace {
