@@ -23,8 +23,8 @@ GuardedMove::Output PlanRunner::update(const GuardedMove::Input& input) {
     begin_next_ = false;
     step_ = next_;
     before_ = signature_;
-    std::optional<Eigen::Quaterniond> held;
-    if (move_) held = output_.setpoint.pose.orientation;
+    std::optional<Pose> held;
+    if (move_) held = output_.setpoint.pose;
     move_.emplace(move_parameters(plan_, step_), before_, held);
     move_started_ = true;
     start_ns_ = input.time_ns;

@@ -183,7 +183,11 @@ std::vector<TracedMove> read_trace(const std::filesystem::path& file) {
     Words words(line, where);
     const std::string kind = words.word();
     if (kind == "m") {
-      moves.push_back(read_move(words));
+      TracedMove move = read_move(words);
+      if (!moves.empty() && !moves.back().inputs.empty()) {
+        move.held = moves.back().inputs.back().setpoint;
+      }
+      moves.push_back(std::move(move));
     } else if (kind == "i" && !moves.empty()) {
       moves.back().inputs.push_back(read_input(words));
     } else if (kind == "r") {

@@ -45,6 +45,7 @@ struct TracedInput {
 struct TracedMove {
   std::size_t step = 0;
   ContactSignature signature_before;
+  std::optional<Pose> held;  ///< the setpoint as the move before left it
   std::uint32_t timeout_us = 0;
   SpeedLimits speeds;
   std::vector<TracedInput> inputs;

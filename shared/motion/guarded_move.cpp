@@ -52,7 +52,7 @@ Pose pressed(const Pose& pose, ContactSignature signature, const Compliance& com
 }  // namespace
 
 GuardedMove::GuardedMove(const MoveParameters& parameters, ContactSignature signature,
-                         const std::optional<Eigen::Quaterniond>& held)
+                         const std::optional<Pose>& held)
     : parameters_(parameters),
       held_(held),
       rotates_(parameters.compliance.compliant_axes >> 3 != 0),
@@ -86,7 +86,7 @@ GuardedMove::Output GuardedMove::update(const Input& input) {
   }
   if (!axes_) {
     axes_ = input.pose.orientation * parameters_.carried_from->conjugate();
-    if (held_) held_ = axes_->conjugate() * *held_;
+    if (held_) held_ = compose({Vector3::Zero(), axes_->conjugate()}, *held_);
   }
   const bool was_done = result_.has_value();
   advance(in_own_axes(input));
@@ -139,7 +139,8 @@ void GuardedMove::start(const Input& input) {
   // What the move leaves is not pressed any more, so that it travels what it was told.
   rest_ = rest_setpoint(input.pose, {static_cast<std::uint16_t>(initial_.bits & ~leaving_.bits)},
                         parameters_);
-  if (held_ && rotates_) rest_.orientation = *held_;
+  if (held_ && initial_.bits == 0) rest_ = with_position_of(*held_, rest_);
+  if (held_ && rotates_) rest_.orientation = held_->orientation;
   setpoint_.pose = rest_;
   plan_path(input.time_ns, 0.0);
 }
@@ -261,7 +262,18 @@ Pose GuardedMove::resting(const Pose& pose, ContactSignature signature) const {
   const bool turning = displacement_.tail<3>().any() && outcome_ != Outcome::kReached;
   const bool turned = signature.bits >> 2 * kTranslations != 0;
   if (rotates_ && !turning && !turned) rest.orientation = setpoint_.pose.orientation;
-  return rest;
+  const bool free = signature.bits == 0 && outcome_ == Outcome::kReached;
+  return free ? with_position_of(setpoint_.pose, rest) : rest;
+}
+
+Pose GuardedMove::with_position_of(const Pose& held, Pose pose) const {
+  const double give_m = parameters_.thresholds.force_off_N / parameters_.compliance.stiffness_Npm;
+  for (int axis = 0; axis < kTranslations; ++axis) {
+    const double position_m = held.position_m[axis];
+    const bool none = std::abs(position_m - pose.position_m[axis]) < give_m;
+    if (none && yields(parameters_.compliance, axis)) pose.position_m[axis] = position_m;
+  }
+  return pose;
 }
 
 void GuardedMove::settle(const Input& input) {

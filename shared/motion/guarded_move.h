@@ -74,10 +74,10 @@ class GuardedMove {
 
   /// @param parameters must satisfy check_thresholds() (shared/motion/rules.h)
   /// @param signature the contacts that the tool holds as the move starts
-  /// @param held the orientation that the setpoint had as the move before left it; without it the
-  /// tool's own, which a torque that counts for none has turned by the spring's give
+  /// @param held the setpoint as the move before left it; without it the move begins from the tool,
+  /// which a force or torque that counts for none has moved by the spring's give
   GuardedMove(const MoveParameters& parameters, ContactSignature signature,
-              const std::optional<Eigen::Quaterniond>& held = std::nullopt);
+              const std::optional<Pose>& held = std::nullopt);
 
   /// One step. The first call sets the start pose and time. After kDone the setpoint holds.
   Output update(const Input& input);
@@ -110,9 +110,12 @@ class GuardedMove {
   void settle(const Input& input);
   /// The setpoint of a tool that rotates follows it, pressing on.
   void creep(const Pose& pose);
-  /// The setpoint of a tool that is left where it is. What turns it without being a contact would
-  /// turn it on from move to move if the setpoint followed.
+  /// The setpoint of a tool that is left where it is. What moves it without being a contact would
+  /// move it on from move to move if the setpoint followed.
   [[nodiscard]] Pose resting(const Pose& pose, ContactSignature signature) const;
+  /// `pose` with what another one has of its position along axes where less than force_off_N keeps
+  /// the two apart.
+  [[nodiscard]] Pose with_position_of(const Pose& held, Pose pose) const;
   void finish(const Input& input);
   /// @param limited out: bit a: the spring's pull is at its limit on axis a
   [[nodiscard]] Pose clamped(const Pose& setpoint, const Pose& pose, std::uint8_t& limited) const;
@@ -124,7 +127,7 @@ class GuardedMove {
   [[nodiscard]] ContactSignature kept() const;
 
   MoveParameters parameters_;
-  std::optional<Eigen::Quaterniond> held_;  ///< as the move begins, in its own axes
+  std::optional<Pose> held_;                ///< as the move begins, in its own axes
   std::optional<Eigen::Quaterniond> axes_;  ///< the move's, in the task frame, where they differ
   bool rotates_ = false;                    ///< something may turn the tool
   bool aligns_ = false;                     ///< what it meets is to

@@ -61,12 +61,13 @@ TEST(Chain, ATraceFromTheExecutorReplaysOfflineBitForBit) {
 
   const executor::PlanRunner& executed = run.controller().runner();
   std::optional<GuardedMove> move;
+  std::optional<Pose> held;
   std::size_t finished = 0;
   for (const CycleRecord& record : recorder.records) {
     if (!record.moving) continue;
     if (record.move_started) {
       move.emplace(move_parameters(box_plan("1"), static_cast<std::size_t>(record.step)),
-                   ContactSignature{record.signature_before});
+                   ContactSignature{record.signature_before}, held);
     }
     ASSERT_TRUE(move);
     GuardedMove::Input input;
@@ -77,6 +78,7 @@ TEST(Chain, ATraceFromTheExecutorReplaysOfflineBitForBit) {
     const GuardedMove::Output output = move->update(input);
     ASSERT_EQ(output.setpoint.pose, executor::pose_of(record.setpoint)) << record.sequence;
     ASSERT_EQ(output.phase, record.phase) << record.sequence;
+    held = output.setpoint.pose;
     if (output.phase != GuardedMove::Phase::kDone) continue;
     const GuardedMove::Result& there = executed.report(finished).result;
     const GuardedMove::Result& here = *move->result();

@@ -139,7 +139,7 @@ TEST(Pause, ATraceOfAPausedMoveReplaysBitForBit) {
   const std::vector<TracedMove> moves = read_trace(file);
   ASSERT_EQ(moves.size(), 2U);
   for (const TracedMove& traced : moves) {
-    GuardedMove move(move_parameters(plan, traced), traced.signature_before);
+    GuardedMove move(move_parameters(plan, traced), traced.signature_before, traced.held);
     for (const TracedInput& input : traced.inputs) {
       ASSERT_EQ(move.update(input.input).setpoint.pose, input.setpoint);
     }

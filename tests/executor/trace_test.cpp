@@ -43,7 +43,7 @@ TEST(Trace, AReplayedRunGivesTheSameBits) {
   for (const TracedMove& traced : moves) {
     ASSERT_TRUE(traced.complete);
     ASSERT_GT(traced.inputs.size(), 50U);
-    GuardedMove move(move_parameters(plan, traced), traced.signature_before);
+    GuardedMove move(move_parameters(plan, traced), traced.signature_before, traced.held);
     for (const TracedInput& input : traced.inputs) {
       EXPECT_FALSE(move.result().has_value());
       ASSERT_EQ(move.update(input.input).setpoint.pose, input.setpoint);
@@ -66,8 +66,8 @@ TEST(Trace, AStepThatTheDryRunSlowedIsReplayedAtTheSpeedsOfTheTrace) {
   const TracedMove traced = read_trace(file).back();
   const Plan plan = touch_and_slide_plan();
   EXPECT_LT(traced.speeds.contact_mps, 0.7 * plan.parameter_sets[0].speeds.contact_mps);
-  GuardedMove as_executed(move_parameters(plan, traced), traced.signature_before);
-  GuardedMove as_planned(move_parameters(plan, traced.step), traced.signature_before);
+  GuardedMove as_executed(move_parameters(plan, traced), traced.signature_before, traced.held);
+  GuardedMove as_planned(move_parameters(plan, traced.step), traced.signature_before, traced.held);
   bool differs = false;
   for (const TracedInput& input : traced.inputs) {
     ASSERT_EQ(as_executed.update(input.input).setpoint.pose, input.setpoint);
@@ -83,7 +83,7 @@ TEST(Trace, AnotherThresholdMakesAnotherMoveOfTheSameTrace) {
   const TracedMove traced = read_trace(file).front();
   Plan plan = touch_and_slide_plan();
   plan.parameter_sets[0].thresholds.force_on_N = 3.5;
-  GuardedMove move(move_parameters(plan, traced), traced.signature_before);
+  GuardedMove move(move_parameters(plan, traced), traced.signature_before, traced.held);
   bool differs = false;
   for (const TracedInput& input : traced.inputs) {
     differs = differs || !(move.update(input.input).setpoint.pose == input.setpoint);

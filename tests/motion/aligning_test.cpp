@@ -193,16 +193,16 @@ TEST(Aligning, APressTurnsNothingAboutItsOwnDirection) {
   EXPECT_LT(result.duration_ns, 3'000'000'000);
 }
 
-/// Where a tool ends that goes to and fro in free air while its sensor is off by a torque about z.
-double turned_after(int moves, double torque_Nm, bool hand_on) {
+/// Where a tool ends that goes to and fro in free air while its sensor is off by a wrench.
+Pose moved_after(int moves, const Vector6& wrench, bool hand_on) {
   MoveParameters move;
   move.compliance.stiffness_Nmpr = 5.0;
   move.compliance.damping_Nmspr = 1.0;
   move.sensed_axes = 0b000111;
   Admittance tool(move.compliance);
   GuardedMove::Input input;
-  input.wrench[5] = torque_Nm;
-  std::optional<Eigen::Quaterniond> held;
+  input.wrench = wrench;
+  std::optional<Pose> held;
   for (int i = 0; i < moves; ++i) {
     move.displacement[1] = i % 2 == 0 ? 0.02 : -0.02;
     GuardedMove guarded(move, {}, hand_on ? held : std::nullopt);
@@ -212,18 +212,30 @@ double turned_after(int moves, double torque_Nm, bool hand_on) {
       setpoint = guarded.update(input).setpoint;
       tool.update(setpoint, input.wrench, 1e-6 * kStep_us);
     }
-    held = setpoint.pose.orientation;
+    held = setpoint.pose;
   }
-  return turn_of(tool.state().pose);
+  return tool.state().pose;
 }
 
 TEST(Aligning, AToolInFreeAirIsNotTurnedOnFromMoveToMove) {
-  constexpr double kTorque_Nm = 0.005;
-  constexpr double kGive_rad = kTorque_Nm / 5.0;
-  EXPECT_NEAR(turned_after(1, kTorque_Nm, true), kGive_rad, 0.2 * kGive_rad);
-  EXPECT_NEAR(turned_after(20, kTorque_Nm, true), kGive_rad, 0.2 * kGive_rad);
+  const Vector6 torque = 0.005 * Vector6::Unit(5);
+  constexpr double kGive_rad = 0.005 / 5.0;
+  EXPECT_NEAR(turn_of(moved_after(1, torque, true)), kGive_rad, 0.2 * kGive_rad);
+  EXPECT_NEAR(turn_of(moved_after(20, torque, true)), kGive_rad, 0.2 * kGive_rad);
   // As if each move began from where the one before had left the tool.
-  EXPECT_GT(turned_after(20, kTorque_Nm, false), 5.0 * kGive_rad);
+  EXPECT_GT(turn_of(moved_after(20, torque, false)), 5.0 * kGive_rad);
+}
+
+TEST(Aligning, NorIsItShiftedOnByAForceThatCountsForNone) {
+  const double give_m = 0.5 / Compliance{}.stiffness_Npm;
+  const auto shifted_m = [](double force_N, int moves, bool hand_on) {
+    return moved_after(moves, force_N * Vector6::Unit(2), hand_on).position_m.z();
+  };
+  EXPECT_LT(shifted_m(0.5, 20, true), 1.1 * give_m);
+  EXPECT_GT(shifted_m(0.5, 20, false), 3.0 * give_m);
+  // What may be a contact that was not noticed shifts the tool for good.
+  const double force_N = 2.0 * MoveParameters{}.thresholds.force_off_N;
+  EXPECT_GT(shifted_m(force_N, 20, true), 1.5 * force_N / Compliance{}.stiffness_Npm);
 }
 
 TEST(Aligning, AFaceOfTwentyMillimetresIsFoundWithPressTorques) {
