@@ -34,22 +34,34 @@ struct Seen {
   }
 };
 
-void widen(Vector6& min, Vector6& max, const EnvelopeMargins& margins, CoordinateMask coordinates) {
+void widen(Vector6& min, Vector6& max, const Vector6& margins, CoordinateMask coordinates) {
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(coordinates, axis)) {
       min[axis] = max[axis] = 0.0;
       continue;
     }
-    const double margin = axis < 3 ? margins.position_m : margins.angle_rad;
-    min[axis] -= margin;
-    max[axis] += margin;
+    min[axis] -= margins[axis];
+    max[axis] += margins[axis];
   }
 }
 
-Envelope widened(Envelope envelope, const EnvelopeMargins& margins, const Plan& plan) {
-  widen(envelope.travelled_min, envelope.travelled_max, margins, plan.coordinates);
-  widen(envelope.place_min, envelope.place_max, margins, plan.check_places ? plan.coordinates : 0);
-  return envelope;
+/// How far the environments are turned at most, about each axis.
+Vector3 turned_rad(std::span<const Chain> chains) {
+  Vector3 turned = Vector3::Zero();
+  for (const Chain& chain : chains) {
+    const Vector6 error = displacement_between(Pose{}, chain.start.environment);
+    turned = turned.cwiseMax(error.tail<3>().cwiseAbs());
+  }
+  return turned;
+}
+
+/// Of an axis about which a press was seen to turn the part.
+Vector6 pressed_margins(const Envelope& seen, Vector6 margins, const Vector3& turned_rad) {
+  for (int axis = 3; axis < 6; ++axis) {
+    const double most = std::max(-seen.travelled_min[axis], seen.travelled_max[axis]);
+    if (most > margins[axis]) margins[axis] += turned_rad[axis - 3];
+  }
+  return margins;
 }
 
 using SeenByOutcome = std::array<Seen, kOutcomes.size()>;
@@ -96,17 +108,26 @@ Plan with_envelopes(const Plan& draft, const Task& task, std::span<const Chain> 
       seen[chain.steps[i]][static_cast<std::size_t>(move.outcome)].add(move, place);
     }
   }
-  const EnvelopeMargins margins = envelope_margins(draft, task);
+  const EnvelopeMargins least = envelope_margins(draft, task);
+  Vector6 margins;
+  margins << Vector3::Constant(least.position_m), Vector3::Constant(least.angle_rad);
+  const Vector3 turned = turned_rad(chains);
   Plan plan = draft;
   plan.check_envelopes = true;
   plan.check_places = places_are_told(plan.coordinates);
   for (std::size_t step = 0; step < plan.steps.size(); ++step) {
     close_gap(seen[step]);
+    const bool aligns = plan.parameter_sets[plan.steps[step].parameter_set].aligns;
     for (std::size_t outcome = 0; outcome < kOutcomes.size(); ++outcome) {
       OutcomeRule& rule = plan.steps[step].outcomes[outcome];
       const Seen& one = seen[step][outcome];
       if (one.any) {
-        rule.envelope = widened(one.envelope, margins, plan);
+        const bool pressed = aligns && kOutcomes[outcome] == Outcome::kContact;
+        Envelope& envelope = rule.envelope = one.envelope;
+        widen(envelope.travelled_min, envelope.travelled_max,
+              pressed ? pressed_margins(envelope, margins, turned) : margins, plan.coordinates);
+        widen(envelope.place_min, envelope.place_max, margins,
+              plan.check_places ? plan.coordinates : 0);
       } else {
         rule = {};
       }

@@ -28,7 +28,10 @@ struct EnvelopeMargins {
 /// on, every other fails; a range spans what was seen and the margins. Where a step was both
 /// stopped by a contact and not, a contact may come anywhere up to the whole displacement. Plans
 /// with rotations check places too: how a part is turned shifts all moves that follow, and what
-/// travels allow adds up to far more than what is seen.
+/// travels allow adds up to far more than what is seen. How far a press turns a part hangs on where
+/// exactly the two meet and on what the torque sensor is wrong by, which no chain has: an angle
+/// about which a press is seen to turn the part may be larger by as much as the environments of the
+/// chains are turned. One that a press is not seen to change shows that the part lay flat.
 [[nodiscard]] Plan with_envelopes(const Plan& draft, const Task& task,
                                   std::span<const Chain> chains);
 

@@ -57,5 +57,39 @@ TEST(Envelopes, WhereSomeMissedTheContactItMayComeAnywhereUpToTheWholeWay) {
   EXPECT_GT(plan.steps[0].rule(Outcome::kReached).envelope.travelled_min[0], 0.09);
 }
 
+/// A touch that turned the part by as much, in an environment that is turned by as much.
+Chain turned_chain(double part_rad, double environment_rad) {
+  GuardedMove::Result move = result_of(Outcome::kContact, 0.04, 0b0010);
+  move.travelled[5] = part_rad;
+  Chain chain = chain_of(move);
+  chain.start.environment.orientation = rotation_of({0.0, 0.0, environment_rad});
+  return chain;
+}
+
+/// The largest angle that a plan lets such touches turn a part by.
+double most_turned_rad(double part_rad, bool aligns) {
+  Task task = room_task();
+  task.coordinates = 0b100001;
+  const std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.1};
+  Plan draft = draft_plan(task, task.starts.front(), {}, displacements);
+  draft.parameter_sets.front().aligns = aligns;
+  const std::vector<Chain> chains = {turned_chain(part_rad, 0.08), turned_chain(0.0, -0.02)};
+  const Plan plan = with_envelopes(draft, task, chains);
+  return plan.steps[0].rule(Outcome::kContact).envelope.travelled_max[5];
+}
+
+TEST(Envelopes, APressThatTurnsThePartMayTurnItByMore) {
+  Task task = room_task();
+  task.coordinates = 0b100001;
+  const std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.1};
+  const Plan draft = draft_plan(task, task.starts.front(), {}, displacements);
+  const double margin_rad = envelope_margins(draft, task).angle_rad;
+  const double turned_rad = 2.0 * margin_rad;
+  EXPECT_NEAR(most_turned_rad(turned_rad, true), turned_rad + margin_rad + 0.08, 1e-6);
+  // Who lies flat already shows it by not being turned, and who does not press turns nothing.
+  EXPECT_NEAR(most_turned_rad(0.5 * margin_rad, true), 1.5 * margin_rad, 1e-6);
+  EXPECT_NEAR(most_turned_rad(turned_rad, false), turned_rad + margin_rad, 1e-6);
+}
+
 }  // namespace
 }  // namespace tenon::planner
