@@ -10,7 +10,7 @@ std::vector<Primitive> both_ways(const Task& task, double step_m, double step_ra
   std::vector<Primitive> primitives;
   for (int axis = 0; axis < 6; ++axis) {
     const double step = axis < 3 ? step_m : step_rad;
-    if (!has(task.coordinates, axis) || step == 0.0) continue;
+    if (!has(moved_axes(task), axis) || step == 0.0) continue;
     for (const int sign : {+1, -1}) {
       Primitive primitive;
       primitive.label = 2 * axis + (sign > 0 ? 0 : 1);
@@ -25,6 +25,10 @@ std::vector<Primitive> both_ways(const Task& task, double step_m, double step_ra
 }  // namespace
 
 Vector6 stored(const Vector6& value) { return value.cast<float>().cast<double>(); }
+
+CoordinateMask moved_axes(const Task& task) {
+  return static_cast<CoordinateMask>(task.coordinates & task.compliance.compliant_axes);
+}
 
 std::vector<Primitive> step_primitives(const Task& task) {
   return both_ways(task, task.step_m, task.step_rad);
@@ -46,7 +50,7 @@ std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean, co
                                           int label) {
   Vector6 displacement = in_move_axes(task, mean, displacement_between(mean, place));
   for (int axis = 0; axis < 6; ++axis) {
-    if (!has(task.coordinates, axis)) displacement[axis] = 0.0;
+    if (!has(moved_axes(task), axis)) displacement[axis] = 0.0;
   }
   if (displacement.head<3>().norm() > task.direct_reach_m) return std::nullopt;
   if (displacement.cwiseAbs().maxCoeff() < kNoMove) return std::nullopt;

@@ -21,7 +21,10 @@ inline constexpr int kDirectLabel = 12;
 [[nodiscard]] inline int axis_of(const Primitive& push) { return push.label / 2; }
 [[nodiscard]] inline int sign_of(const Primitive& push) { return push.label % 2 == 0 ? 1 : -1; }
 
-/// + and - one step along every search coordinate.
+/// The coordinates that moves go along: those that yield. The others are free at the goal.
+[[nodiscard]] CoordinateMask moved_axes(const Task& task);
+
+/// + and - one step along every coordinate that moves go along.
 [[nodiscard]] std::vector<Primitive> step_primitives(const Task& task);
 
 /// + and - one long step along every translation of the search, for the attractor search.
@@ -31,7 +34,7 @@ inline constexpr int kDirectLabel = 12;
 /// (ParameterSet::carried_axes).
 [[nodiscard]] Vector6 in_move_axes(const Task& task, const Pose& tool, const Vector6& displacement);
 
-/// From the belief's mean straight to a place, in the search's coordinates. A lattice cannot land
+/// From the belief's mean straight to a place, along what moves go along. A lattice cannot land
 /// on an arbitrary goal; this can. Empty where the place is beyond direct_reach_m, or already met.
 [[nodiscard]] std::optional<Primitive> direct_primitive(const Task& task, const Pose& mean,
                                                         const Pose& place,

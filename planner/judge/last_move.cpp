@@ -47,7 +47,7 @@ std::optional<Plan> with_last_move_centred(const Plan& plan, std::span<const Cha
   const double before_m = last.displacement.head<3>().norm();
   const Vector6 back = in_move_axes(task, chains.front().end(), off);
   for (int axis = 0; axis < 6; ++axis) {
-    if (has(task.coordinates, axis)) last.displacement[axis] -= back[axis];
+    if (has(moved_axes(task), axis)) last.displacement[axis] -= back[axis];
   }
   const double after_m = last.displacement.head<3>().norm();
   last.slow_from_m = last.slow_from_m < before_m ? std::min(last.slow_from_m, after_m) : after_m;

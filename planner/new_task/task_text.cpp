@@ -177,9 +177,11 @@ search:
   time_limit_s: 300
 )";
 
-std::string compliance_text(bool turns) {
-  std::string text = "\n# How the arm yields.\ncompliance:\n  axes: [x, y, z";
-  if (turns) text += kRotations;
+std::string compliance_text(bool turns, bool yaw_matters) {
+  std::string text = "\n# How the arm yields.";
+  if (turns && !yaw_matters) text += " Not in yaw, which touches need not find.";
+  text += "\ncompliance:\n  axes: [x, y, z";
+  if (turns) text += yaw_matters ? kRotations : ", rx, ry";
   text += "]\n  mass_kg: 2.0\n  damping_Nspm: 1500.0\n  stiffness_Npm: 1000.0\n";
   if (turns) text += "  inertia_kgm2: 0.02\n  damping_Nmspr: 1.0\n  stiffness_Nmpr: 5.0\n";
   return text;
@@ -209,7 +211,7 @@ std::string task_text(const NewTask& task) {
   return "# Written by tenon-plan --new-task from two parts. Measured:\n#\n" +
          commented(findings(task)) + "\nname: " + task.name + "\ncoordinates: [x, y, z" +
          (turns ? kRotations : "") + "]\n\n" + shapes_text(task, n) + start_text(task, n) +
-         goal_text(task, n) + kMotion + compliance_text(turns) + kPhysics;
+         goal_text(task, n) + kMotion + compliance_text(turns, task.fit.yaw_matters) + kPhysics;
 }
 
 }  // namespace tenon::planner

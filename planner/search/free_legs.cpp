@@ -34,7 +34,7 @@ std::optional<std::vector<Vector6>> FreeLegs::to(const BeliefSummary& belief, co
                                                  const ArmPlace* arm) {
   Vector6 way = displacement_between(belief.mean, place);
   for (int axis = 0; axis < 6; ++axis) {
-    if (!has(task_.coordinates, axis)) way[axis] = 0.0;
+    if (!has(moved_axes(task_), axis)) way[axis] = 0.0;
   }
   const std::vector<Legs> all = candidates(way, belief.mean);
   const Pose end = displaced(belief.mean, way);

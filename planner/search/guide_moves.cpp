@@ -28,7 +28,7 @@ class Suggestions {
   void to(const Pose& place, int left_out) {
     Vector6 way = in_move_axes(task_, belief_.mean, displacement_between(belief_.mean, place));
     for (int axis = 0; axis < 6; ++axis) {
-      if (!has(task_.coordinates, axis)) way[axis] = 0.0;
+      if (!has(moved_axes(task_), axis)) way[axis] = 0.0;
     }
     for (int axis = 0; axis < 6; ++axis) add(way[axis] * Vector6::Unit(axis));
     if (left_out >= 0) way[left_out] = 0.0;

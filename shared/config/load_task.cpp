@@ -234,6 +234,7 @@ void read_compliance(const Value& value, Task& task) {
   c.compliant_axes = read_axes(map.at("axes"));
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(task.coordinates, axis) || has(c.compliant_axes, axis)) continue;
+    if (axis >= 3 && has(task.goal_axes.free, axis)) continue;
     map.at("axes").refuse("lacks the search coordinate " + std::string(axis_name(axis)) +
                           ": a rigid axis feels no contact");
   }

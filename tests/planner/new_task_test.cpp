@@ -169,6 +169,16 @@ TEST(NewTask, ATurningPartIsHeldAboveItsChamfer) {
   EXPECT_NEAR(tip_m(Written(0.05)), -5e-3, 1e-9);
 }
 
+TEST(NewTask, YawThatDoesNotMatterIsFreeAndDoesNotYield) {
+  const Task keyed = load_task(Written(0.05).file);
+  EXPECT_EQ(keyed.goal_axes.free, 0);
+  EXPECT_EQ(keyed.compliance.compliant_axes, 0b111111);
+  const Written written(0.05, round_peg(10e-3), round_socket(10.3e-3));
+  const Task round = load_task(written.file);
+  EXPECT_EQ(round.goal_axes.free, 0b100000);
+  EXPECT_EQ(round.compliance.compliant_axes, 0b011111);
+}
+
 TEST(NewTask, SaysWhatItMeasured) {
   const Written written(0.0);
   const std::string said = findings(written.task);

@@ -118,6 +118,15 @@ TEST(LoadTask, HashIsThatOfTheBytes) {
   EXPECT_NE(load_task(folder.put("c.yaml", std::string(kTinyTask) + "\n")).hash, hash);
 }
 
+TEST(LoadTask, WhatAnyEndWillDoForNeedNotYield) {
+  const ScratchFolder folder;
+  const std::string rigid = replaced(kTinyTask, "axes: [x, y, rz]", "axes: [x, y]");
+  const Task task = load_task(folder.put("free.yaml", replaced(rigid.c_str(), "tolerance_m: 0.002",
+                                                               "tolerance_m: 0.002, free: [rz]")));
+  EXPECT_EQ(task.compliance.compliant_axes, 0b000011);
+  EXPECT_EQ(task.coordinates, 0b100001);
+}
+
 TEST(LoadTask, RefusesEachBadCoordinateAndSpreadWithItsPlace) {
   const std::vector<BadLine> lines = {
       {"sigma_m: [0.03]", "sigma_m: [-0.03]",
