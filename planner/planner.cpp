@@ -25,15 +25,6 @@
 namespace tenon::planner {
 namespace {
 
-CellAssumptions assumptions_of(const Task& task, const PlannerOptions& options) {
-  CellAssumptions assumptions;
-  assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
-  if (options.assumptions) assumptions = *options.assumptions;
-  // As a plan file holds them, so that what is searched is what is certified.
-  const auto stored = [](double value) { return static_cast<double>(static_cast<float>(value)); };
-  return {stored(assumptions.contact_stiffness_Npm), stored(assumptions.latency_max_s)};
-}
-
 // By how much of what they exceed 1 by the weights are lowered, and where they become 1.
 constexpr double kLowered = 0.5;
 constexpr double kLeastShare = 0.1;
@@ -47,11 +38,6 @@ constexpr int kTriesAGuide = 6;
 // After how long without a line progress is told, so that it is never silent for 2 s.
 constexpr double kSilent_s = 1.0;
 
-/// A lattice of the task's own has no other move to take.
-SuccessorEngine::Edges edges_of(const Task& task) {
-  return task.guide_moves ? SuccessorEngine::Edges::kRefused : SuccessorEngine::Edges::kTaken;
-}
-
 class Planning {
  public:
   Planning(const Task& task, const Start& start, const Rollout& rollout,
@@ -59,7 +45,7 @@ class Planning {
       : task_(task),
         start_(start),
         options_(options),
-        assumptions_(assumptions_of(task, options)),
+        assumptions_(stored_assumptions(task, options.assumptions)),
         now_s_(now_s ? now_s : [] { return 0.0; }),
         began_s_(now_s_()),
         pool_(rollout, options.threads),
@@ -92,20 +78,19 @@ class Planning {
     if (at_goal(summarise(start, task_), task_)) {
       return ended(PlanStatus::kAlreadyAtGoal, already_at_goal(start_));
     }
-    Attractors attractors = guides_from(start);
-    const std::vector<Guide> candidates = attractors.candidates;
-    const bool in_turn = attractors.in_turn;
-    searched_.emplace(task_, start, std::move(attractors), succ_);
+    const Attractors attractors = guides_from(start);
+    searched_.emplace(task_, start, attractors, succ_);
     const auto enough = [this] {
       return !is_baseline() && succ_.counters().rollouts >= kFirstMoves;
     };
-    if ((in_turn && followed_in_turn(candidates)) ||
-        searched([&] { return out_of_budget() || enough(); }) ||
-        (enough() &&
-         ((!in_turn && followed(candidates)) || searched([this] { return out_of_budget(); })))) {
-      improve();
-      return ended(PlanStatus::kPlanned, "");
+    bool planned = !attractors.turns.empty() && followed_in_turn(attractors.turns);
+    if (!planned) {
+      searched_.emplace(task_, start, attractors, succ_);
+      planned = searched([&] { return out_of_budget() || enough(); }) ||
+                (enough() &&
+                 (followed(attractors.candidates) || searched([this] { return out_of_budget(); })));
     }
+    if (planned) return improve(), ended(PlanStatus::kPlanned, "");
     if (!report_.search.has_path) return without_path();
     return ended(PlanStatus::kNotCertified, every_path_refuted(report_, options_.rounds_max));
   }
@@ -162,10 +147,10 @@ class Planning {
   Attractors guides_from(const Belief& start) {
     Attractors attractors = timed(now_s_, report_.times.attractors_s, [&] {
       return is_baseline()
-                 ? Attractors{{}, {}, goal_attractors(task_, start, long_succ_), 0}
+                 ? Attractors{{}, {}, goal_attractors(task_, start, long_succ_), 0, {}}
                  : find_attractors(
                        task_, start, long_succ_, pool_.front(), [this] { return out_of_budget(); },
-                       [this] { return touched_in_turn(); });
+                       [this] { return touched_in_turn(corners()); });
     });
     report_.guides = attractors.guides.size();
     report_.heuristics = heuristic_names(attractors.guides);
@@ -177,14 +162,25 @@ class Planning {
   /// Several errors at their largest at once: what touches have to hold for that turn the part.
   [[nodiscard]] Belief corners() const { return held(corner_belief(task_, start_)); }
 
-  std::vector<Guide> touched_in_turn() {
+  std::vector<Guide> touched_in_turn(const Belief& starts) {
     const std::function<bool()> stop = [this] { return out_of_budget(); };
-    return TouchTurns(task_, corners(), start_.pose, succ_, search_pool_.front(), stop).find();
+    return TouchTurns(task_, starts, start_.pose, succ_, search_pool_.front(), stop).find();
   }
 
-  bool followed_in_turn(const std::vector<Guide>& candidates) {
+  /// Starts that were not known, and that the guides do not lead, have others looked for that hold
+  /// for them too.
+  bool followed_in_turn(std::vector<Guide> candidates) {
     for (const Particle& corner : corners().particles) searched_->add(corner);
-    return followed(candidates);
+    std::size_t known = searched_->start().particles.size();
+    while (!followed(candidates)) {
+      if (searched_->start().particles.size() == known || out_of_budget()) return false;
+      known = searched_->start().particles.size();
+      doing_ = "looking for guides";
+      candidates = timed(now_s_, report_.times.attractors_s,
+                         [this] { return touched_in_turn(searched_->start()); });
+      tell(guides_found(candidates, long_succ_.counters().rollouts));
+    }
+    return true;
   }
 
   /// Searches, each without what the ones before had refuted. @return whether there is a plan
@@ -215,11 +211,13 @@ class Planning {
   bool leads(const Guide& guide) {
     SuccessorEngine* succ = &succ_;
     for (int tries = 0; tries < kTriesAGuide && !out_of_budget(); ++tries) {
+      std::string left;
       const auto way = timed(now_s_, report_.times.search_s, [&] {
-        return follow_guide(guide, task_, searched_->start(), start_.pose, *succ, pool_.front());
+        return follow_guide(guide, task_, searched_->start(), start_.pose, *succ, pool_.front(),
+                            &left);
       });
+      tell(way ? guide_followed(guide, way->size()) : guide_left(guide, left));
       if (!way) return false;
-      tell(guide_followed(guide, way->size()));
       Judgement judgement = judge_.judge(*way);
       if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
         report_.guide = guide_text(guide);

@@ -18,6 +18,18 @@ Plan one_step(const Task& task, const Start& start, const CellAssumptions& assum
 
 }  // namespace
 
+CellAssumptions stored_assumptions(const Task& task, const std::optional<CellAssumptions>& told) {
+  CellAssumptions assumptions;
+  assumptions.contact_stiffness_Npm = task.contact_stiffness_Npm;
+  if (told) assumptions = *told;
+  const auto stored = [](double value) { return static_cast<double>(static_cast<float>(value)); };
+  return {stored(assumptions.contact_stiffness_Npm), stored(assumptions.latency_max_s)};
+}
+
+SuccessorEngine::Edges edges_of(const Task& task) {
+  return task.guide_moves ? SuccessorEngine::Edges::kRefused : SuccessorEngine::Edges::kTaken;
+}
+
 MoveParameters search_move(const Task& task, const Start& start,
                            const CellAssumptions& assumptions) {
   return move_parameters(one_step(task, start, assumptions), 0);

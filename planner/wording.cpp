@@ -83,6 +83,10 @@ std::string guide_followed(const Guide& guide, std::size_t moves) {
   return "the guide " + guide_text(guide) + format(" leads to the goal in %zu steps", moves);
 }
 
+std::string guide_left(const Guide& guide, const std::string& where) {
+  return "the guide " + guide_text(guide) + " is left at " + where;
+}
+
 std::string path_found(const SearchResult& search) {
   return format("a path of %zu steps after %zu expansions", search.path.size(),
                 search.expanded.size());

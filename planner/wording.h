@@ -32,6 +32,7 @@ struct SearchLimits {
 // Progress.
 /// That planning goes on. @param doing "searching"  @param moves simulated so far, of all kinds
 [[nodiscard]] std::string still(const char* doing, std::uint64_t moves, std::size_t states);
+[[nodiscard]] std::string guide_left(const Guide& guide, const std::string& where);
 [[nodiscard]] std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves);
 /// That a guide leads to the goal by itself. @param moves of that way
 [[nodiscard]] std::string guide_followed(const Guide& guide, std::size_t moves);

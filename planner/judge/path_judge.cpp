@@ -46,20 +46,24 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements) {
   if (auto plain = with_plain_touches(slow, aligned)) {
     Certification as_plain = certified(*plain);
     if (as_plain.holds()) {
-      slow = std::move(*plain);
-      at_contact_speed = std::move(as_plain);
+      Judgement judgement = at_any_speed({std::move(*plain), std::move(as_plain)});
+      if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
     }
   }
+  // As it was searched.
+  return at_any_speed({std::move(slow), std::move(at_contact_speed)});
+}
 
+Judgement PathJudge::at_any_speed(Candidate slow) {
   std::vector<double> distances_m =
-      slow_from(slow, chains_of(at_contact_speed), task_.particle_sigmas);
+      slow_from(slow.plan, chains_of(slow.certification), task_.particle_sigmas);
   for (int attempt = 0; attempt < kSpeedAttempts && any_fast(distances_m); ++attempt) {
-    Plan fast = with_slow_from(slow, distances_m);
+    Plan fast = with_slow_from(slow.plan, distances_m);
     Certification at_speed = certified(fast);
     Judgement judgement = at_speeds(centred(std::move(fast), std::move(at_speed)), distances_m);
     if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
   }
-  return at_speeds(centred(std::move(slow), std::move(at_contact_speed)), distances_m);
+  return at_speeds(centred(std::move(slow.plan), std::move(slow.certification)), distances_m);
 }
 
 PathJudge::Candidate PathJudge::centred(Plan plan, Certification certification) {

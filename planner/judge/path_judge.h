@@ -79,6 +79,8 @@ class PathJudge {
 
   /// Certified, and if it holds with its last move centred, where that holds as well.
   [[nodiscard]] Candidate centred(Plan plan, Certification certification);
+  /// As fast as it holds, else at contact speed. @param slow certified at contact speed
+  [[nodiscard]] Judgement at_any_speed(Candidate slow);
   /// Where the plan does not hold at its speeds, the distances are lowered, to be tried next. At
   /// contact speed throughout there is nothing to lower.
   [[nodiscard]] Judgement at_speeds(Candidate&& candidate, std::vector<double>& distances_m);

@@ -45,8 +45,9 @@ class GuideSearch {
   }
 
   /// Whether the guides found so far lead to the goal's certainty.
-  [[nodiscard]] bool certain() const {
-    return std::any_of(found_.begin(), found_.end(), [this](const Guide& guide) {
+  [[nodiscard]] bool certain() const { return certain_of(found_); }
+  [[nodiscard]] bool certain_of(const std::vector<Guide>& guides) const {
+    return std::any_of(guides.begin(), guides.end(), [this](const Guide& guide) {
       return guide.contacts.back().uncertainty_m2 <= task_.goal_uncertainty_m2;
     });
   }
@@ -245,16 +246,18 @@ Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngin
   std::vector<Guide> turns;
   if (!search.certain()) {
     if (in_turn && search.turned()) turns = in_turn();
-    if (turns.empty()) search.look_around();
+    if (!search.certain_of(turns)) search.look_around();
   }
-  const bool turned = !turns.empty();
-  if (turned) search.take_over(std::move(turns));
+  if (search.certain_of(turns)) {
+    search.take_over(turns);
+  } else {
+    search.sort();
+  }
 
   const CoordinateMask unsettled = search.unsettled();
-  if (!turned) search.sort();
   std::vector<Guide> candidates = search.candidates();
   Attractors found{search.take(), std::move(candidates), goal_attractors(task, start, succ),
-                   unsettled, turned};
+                   unsettled, std::move(turns)};
   if (found.goals.size() > 1 && !found.guides.empty()) {
     Guide through = found.guides.front();
     through.goals.insert(through.goals.begin(), found.goals.back());

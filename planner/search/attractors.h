@@ -22,8 +22,9 @@ struct Attractors {
   /// Uncertain coordinates along which no guide has a contact: nothing that was pushed against
   /// tells where the part is along them.
   CoordinateMask unsettled = 0;
-  /// The guides are faces touched one after the other, found so: to be followed to the letter.
-  bool in_turn = false;
+  /// Faces touched one after the other, found so: to be followed to the letter. Those of them that
+  /// lead to the goal's certainty are the guides.
+  std::vector<Guide> turns;
 };
 
 /// Long pushes along one search axis after the other, from the start and with the start's spread

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "planner/belief/belief_summary.h"
 #include "planner/belief/primitives.h"
@@ -51,7 +52,7 @@ class Walk {
         contact.sign * displacement_between(from.mean, contact.mean)[contact.axis];
     const double step = contact.axis < 3 ? task_.step_m : task_.step_rad;
     const double way = std::max(0.0, beyond) + from.spread[contact.axis] + step;
-    if (way > longest_move(task_, contact.axis)) return false;
+    if (way > longest_move(task_, contact.axis)) return stuck("the push would last too long");
     return move(contact.sign * way * Vector6::Unit(contact.axis));
   }
 
@@ -103,7 +104,15 @@ class Walk {
 
   [[nodiscard]] std::vector<Vector6> take() { return std::move(moves_); }
 
+  /// Of what failed last.
+  [[nodiscard]] const std::string& why() const { return why_; }
+
  private:
+  bool stuck(const char* why) {
+    why_ = why;
+    return false;
+  }
+
   /// Away from what is touched.
   bool back_off() {
     Vector6 off = Vector6::Zero();
@@ -127,7 +136,7 @@ class Walk {
       if (!move_to(before)) return false;
       legs = legs_.to(here(), place, belief_.arm.get());
     }
-    if (!legs) return false;
+    if (!legs) return stuck("no straight legs lead there");
     waypoints_.push_back(here().mean);
     for (const Vector6& leg : *legs) {
       if (!move(in_move_axes(task_, here().mean, leg))) return false;
@@ -143,12 +152,12 @@ class Walk {
 
   bool move(Vector6 way) {
     for (int axis = 0; axis < 6; ++axis) {
-      if (!has(task_.coordinates, axis)) way[axis] = 0.0;
+      if (!has(moved_axes(task_), axis)) way[axis] = 0.0;
     }
     const Primitive primitive{kLabel, stored(way)};
     if (primitive.displacement.isZero()) return true;
     auto ends = succ_.successors(belief_, {&primitive, 1});
-    if (!ends.front()) return false;
+    if (!ends.front()) return stuck("a start fails in a move, or rests at an edge");
     belief_ = std::move(*ends.front());
     moves_.push_back(primitive.displacement);
     return true;
@@ -162,24 +171,33 @@ class Walk {
   Belief belief_;
   std::vector<Vector6> moves_;
   std::vector<Pose> waypoints_;  ///< of the mean, all free: where legs have begun and ended
+  std::string why_ = "the part does not go in";
 };
 
 }  // namespace
 
 std::optional<std::vector<Vector6>> follow_guide(const Guide& guide, const Task& task,
                                                  const Belief& start, const Pose& clear,
-                                                 SuccessorEngine& succ, Rollout& rollout) {
+                                                 SuccessorEngine& succ, Rollout& rollout,
+                                                 std::string* left) {
   Walk walk(task, start, clear, succ, rollout);
   const bool turned = walk.turned();
+  const auto leave = [&](const std::string& where) {
+    if (left != nullptr) *left = where + ": " + walk.why();
+    return std::nullopt;
+  };
   for (const bool again : {false, true}) {
-    for (const ContactAttractor& contact : guide.contacts) {
+    for (std::size_t i = 0; i < guide.contacts.size(); ++i) {
+      const ContactAttractor& contact = guide.contacts[i];
       if (!again && !turned && is_behind(walk.here(), contact, task)) continue;
-      if (!walk.touch(contact)) return std::nullopt;
+      if (!walk.touch(contact)) {
+        return leave("its touch " + std::to_string(i + 1) + (again ? ", made again" : ""));
+      }
       if (again && turned && walk.arrive()) return walk.take();
     }
     if (walk.arrive()) return walk.take();
   }
-  return std::nullopt;
+  return leave("the goal");
 }
 
 }  // namespace tenon::planner

@@ -4,6 +4,7 @@
 // thread at a time.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "planner/belief/successor.h"
@@ -18,10 +19,9 @@ namespace tenon::planner {
 /// met while another coordinate was still uncertain are met once more where that takes it.
 /// @param clear a pose known to be free, above or beside everything
 /// @param rollout asked for collisions only
-[[nodiscard]] std::optional<std::vector<Vector6>> follow_guide(const Guide& guide, const Task& task,
-                                                               const Belief& start,
-                                                               const Pose& clear,
-                                                               SuccessorEngine& succ,
-                                                               Rollout& rollout);
+/// @param left where not null: set to where the guide could not be followed on, and why
+[[nodiscard]] std::optional<std::vector<Vector6>> follow_guide(
+    const Guide& guide, const Task& task, const Belief& start, const Pose& clear,
+    SuccessorEngine& succ, Rollout& rollout, std::string* left = nullptr);
 
 }  // namespace tenon::planner

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planner/belief/primitives.h"
+
 namespace tenon::planner {
 
 Eigen::AlignedBox3d around(const std::vector<Shape>& shapes) {
@@ -26,6 +28,24 @@ Belief spread_about(const Pose& place, const Belief& belief, const Pose& mean, R
     particle.pose = seen_as(particle.environment, tool);
     particle.signature = {};
     there.particles.push_back(particle);
+  }
+  return there;
+}
+
+Belief moved_to(const Pose& place, const Belief& belief, const Pose& mean, const Task& task) {
+  Vector6 way = in_move_axes(task, mean, displacement_between(mean, place));
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!has(moved_axes(task), axis)) way[axis] = 0.0;
+  }
+  Belief there = belief;
+  for (Particle& particle : there.particles) {
+    Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();
+    if (task.motion.carried_axes) {
+      axes = particle.pose.orientation * task.goal.orientation.conjugate();
+    }
+    const Pose own = compose({Vector3::Zero(), axes.conjugate()}, particle.pose);
+    particle.pose = compose({Vector3::Zero(), axes}, displaced(own, way));
+    particle.signature = {};
   }
   return there;
 }

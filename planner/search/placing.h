@@ -18,6 +18,12 @@ namespace tenon::planner {
 [[nodiscard]] Belief spread_about(const Pose& place, const Belief& belief, const Pose& mean,
                                   Rollout& rollout);
 
+/// Every particle where the straight move through free space has it that brings the belief's mean
+/// to a place, touching nothing. Unlike spread_about(), what rotations are uncertain by counts as
+/// much as the place is away from what they turn about. Nothing is asked for collisions.
+[[nodiscard]] Belief moved_to(const Pose& place, const Belief& belief, const Pose& mean,
+                              const Task& task);
+
 /// By how much more than its origin a turned part is off along each axis, at most.
 /// @param spread m and rad, by axis  @param part around it, tool frame
 [[nodiscard]] Vector3 turned_aside_m(const Vector6& spread, const Eigen::AlignedBox3d& part);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -15,12 +16,15 @@ namespace {
 
 // Faces against a push: within two degrees.
 constexpr double kFacing = 0.9994;
-// Of one patch: no farther apart along the push.
+// A round side: as far as it slopes by up to 25 degrees.
+constexpr double kRound = 0.906;
+// Of one flat patch: no farther apart along the push.
 constexpr double kFlat_m = 1e-5;
 // The most patches of a solid that are worth a push each: of all, and of those that a push from
 // outside meets first. The largest faces of a housing may all be inside of it.
 constexpr std::size_t kMaxPatches = 3;
 constexpr std::size_t kMaxOuterPatches = 3;
+constexpr std::size_t kMaxRoundPatches = 2;
 // Of so many of the largest it is asked whether anything stands before them.
 constexpr std::size_t kMaxAsked = 16;
 // Places on a patch are looked for on a grid of so many by so many.
@@ -35,7 +39,8 @@ using FlatEdge = std::array<Flat, 2>;
 struct Patch {
   std::vector<FlatTriangle> triangles;
   std::vector<FlatEdge> rim;
-  double along_m = 0.0;
+  double along_m = 0.0;  ///< of what a push meets first
+  double deep_m = 0.0;   ///< how far the rest is behind that
   double area_m2 = 0.0;
 };
 
@@ -62,11 +67,13 @@ double distance(const FlatEdge& e, const Flat& p) {
   return std::hypot(e[0][0] + along * u - p[0], e[0][1] + along * v - p[1]);
 }
 
+enum class Side : std::uint8_t { kFlat, kRound };
+
 /// Of a solid's triangles those that face against a push, joined where they share an edge.
 class Patches {
  public:
-  Patches(const Shape& shape, int axis, int sign)
-      : solid_(shape.solid->mesh()), axis_(axis), sign_(sign) {
+  Patches(const Shape& shape, int axis, int sign, Side side)
+      : solid_(shape.solid->mesh()), axis_(axis), sign_(sign), side_(side) {
     for (const Vector3& point_m : solid_.points_m) {
       points_m_.push_back(shape.pose.position_m + shape.pose.orientation * point_m);
     }
@@ -78,14 +85,16 @@ class Patches {
     join();
   }
 
+  /// The largest first.
   [[nodiscard]] std::vector<Patch> take() {
     std::map<std::size_t, Patch> patches;
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       Patch& patch = patches[root(i)];
       const FlatTriangle& flat =
           patch.triangles.emplace_back(FlatTriangle{seen(i, 0), seen(i, 1), seen(i, 2)});
+      if (patch.triangles.size() == 1) patch.along_m = corner_m(i, 0)[axis_];
       patch.area_m2 += area_m2(flat);
-      patch.along_m = corner_m(i, 0)[axis_];
+      add_depth(i, patch);
     }
     for (const auto& [edge, sides] : edges_) {
       if (sides.size() > 1 && root(sides.front()) == root(sides.back())) continue;
@@ -98,10 +107,29 @@ class Patches {
     for (auto& [first, patch] : patches) largest.push_back(std::move(patch));
     std::stable_sort(largest.begin(), largest.end(),
                      [](const Patch& a, const Patch& b) { return a.area_m2 > b.area_m2; });
-    return worth_a_push(std::move(largest));
+    return side_ == Side::kFlat ? worth_a_push(std::move(largest)) : round(std::move(largest));
   }
 
  private:
+  void add_depth(std::size_t triangle, Patch& patch) const {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const double behind_m = sign_ * (corner_m(triangle, corner)[axis_] - patch.along_m);
+      if (behind_m < 0.0) patch.along_m += sign_ * behind_m;
+      patch.deep_m = behind_m < 0.0 ? patch.deep_m - behind_m : std::max(patch.deep_m, behind_m);
+    }
+  }
+
+  /// The first few that nothing stands before, and that are not flat.
+  [[nodiscard]] std::vector<Patch> round(std::vector<Patch> largest) const {
+    std::vector<Patch> taken;
+    for (std::size_t i = 0; i < std::min(largest.size(), kMaxAsked); ++i) {
+      if (taken.size() == kMaxRoundPatches) break;
+      if (largest[i].deep_m < kFlat_m || !is_outer(largest[i])) continue;
+      taken.push_back(std::move(largest[i]));
+    }
+    return taken;
+  }
+
   /// Of patches, the largest first, the first few and the first few outer ones, in that order.
   [[nodiscard]] std::vector<Patch> worth_a_push(std::vector<Patch> largest) const {
     std::vector<Patch> taken;
@@ -142,7 +170,7 @@ class Patches {
   [[nodiscard]] bool faces(const Triangle& t) const {
     const Vector3 normal =
         (points_m_[t[1]] - points_m_[t[0]]).cross(points_m_[t[2]] - points_m_[t[0]]);
-    return -sign_ * normal[axis_] > kFacing * normal.norm();
+    return -sign_ * normal[axis_] > (side_ == Side::kFlat ? kFacing : kRound) * normal.norm();
   }
 
   void join() {
@@ -156,7 +184,8 @@ class Patches {
     for (const auto& [edge, sides] : edges_) {
       for (const std::size_t side : sides) {
         const double apart_m = corner_m(side, 0)[axis_] - corner_m(sides.front(), 0)[axis_];
-        if (std::abs(apart_m) < kFlat_m) patch_of_[root(side)] = root(sides.front());
+        if (side_ == Side::kFlat && std::abs(apart_m) >= kFlat_m) continue;
+        patch_of_[root(side)] = root(sides.front());
       }
     }
   }
@@ -178,6 +207,7 @@ class Patches {
   const TriangleMesh& solid_;
   int axis_;
   int sign_;
+  Side side_;
   std::vector<Vector3> points_m_;
   std::vector<Triangle> triangles_;
   std::vector<std::size_t> patch_of_;
@@ -252,8 +282,19 @@ std::vector<TouchPlace> touch_places(const Shape& shape, int axis, int sign, dou
                                      const Vector3& near_m) {
   if (shape.kind != Shape::Kind::kSolid) return {side_of(shape, axis, sign)};
   std::vector<TouchPlace> places;
-  for (const Patch& patch : Patches(shape, axis, sign).take()) {
+  for (const Patch& patch : Patches(shape, axis, sign, Side::kFlat).take()) {
     places.push_back(place_on(patch, axis, enough_m, near_m));
+  }
+  return places;
+}
+
+std::vector<TouchPlace> round_places(const Shape& shape, int axis, int sign,
+                                     const Vector3& near_m) {
+  std::vector<TouchPlace> places;
+  if (shape.kind != Shape::Kind::kSolid) return places;
+  constexpr double kAsFarAsCanBe_m = 1e3;
+  for (const Patch& patch : Patches(shape, axis, sign, Side::kRound).take()) {
+    places.push_back(place_on(patch, axis, kAsFarAsCanBe_m, near_m));
   }
   return places;
 }

@@ -22,4 +22,10 @@ struct TouchPlace {
 [[nodiscard]] std::vector<TouchPlace> touch_places(const Shape& shape, int axis, int sign,
                                                    double enough_m, const Vector3& near_m);
 
+/// Outer sides of a solid that are round, such as a cylinder's, at most two, the largest first: the
+/// place is where the rim of what slopes by no more than 25 degrees is farthest, as far ahead as
+/// the push meets the side first. None of other shapes.
+[[nodiscard]] std::vector<TouchPlace> round_places(const Shape& shape, int axis, int sign,
+                                                   const Vector3& near_m);
+
 }  // namespace tenon::planner

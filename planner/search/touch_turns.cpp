@@ -137,14 +137,16 @@ void TouchTurns::further(const Turn& turn, std::vector<Turn>& next) {
 
 void TouchTurns::touch_sides(const Turn& turn, const Shape& shape, int axis, int sign,
                              std::vector<Turn>& next) {
-  const BeliefSummary from = summarise(turn.belief, task_);
+  Pose before = {shape.pose.position_m, task_.goal.orientation};
+  before.position_m[axis] = -sign * around({shape}).sizes()[axis];
+  const Vector6 spread = spread_at(before, turn);
   double across_m = 0.0;
   for (int other = 0; other < 3; ++other) {
-    if (other != axis) across_m = std::max(across_m, from.spread[other] + kToRim_m);
+    if (other != axis) across_m = std::max(across_m, spread[other]);
   }
   const double middle_m = across_m + 0.5 * part_.sizes().maxCoeff();
   std::vector<Vector3> tried;
-  for (const double enough_m : {across_m, middle_m}) {
+  for (const double enough_m : {across_m + kToRim_m, middle_m}) {
     for (const TouchPlace& side : touch_places(shape, axis, sign, enough_m, clear_.position_m)) {
       const bool again = std::any_of(tried.begin(), tried.end(), [&](const Vector3& at_m) {
         return (at_m - side.at_m).norm() < task_.step_m;
@@ -154,6 +156,17 @@ void TouchTurns::touch_sides(const Turn& turn, const Shape& shape, int axis, int
       if (push(turn, side, axis, sign, next)) return;
     }
   }
+  // What is off across a round side is off along it by less, and after the other axis by less
+  // again.
+  for (const TouchPlace& side : round_places(shape, axis, sign, clear_.position_m)) {
+    if (stopped() || push(turn, side, axis, sign, next)) return;
+  }
+}
+
+/// What is uncertain where a belief's mean has come through free space.
+Vector6 TouchTurns::spread_at(const Pose& place, const Turn& turn) const {
+  const Belief there = moved_to(place, turn.belief, summarise(turn.belief, task_).mean, task_);
+  return summarise(there, task_).spread;
 }
 
 /// With the tool's origin over the place, from where all of the spread is off the side.
@@ -161,11 +174,15 @@ bool TouchTurns::push(const Turn& turn, const TouchPlace& side, int axis, int si
                       std::vector<Turn>& next) {
   const BeliefSummary from = summarise(turn.belief, task_);
   const double ahead_m = sign > 0 ? part_.max()[axis] : -part_.min()[axis];
-  const double spread_m = from.spread[axis] + turned_aside_m(from.spread, part_)[axis];
   Pose via{side.at_m, task_.goal.orientation};
+  const Vector6 spread = spread_at(via, turn);
+  const double spread_m = spread[axis] + turned_aside_m(spread, part_)[axis];
   via.position_m[axis] -= sign * (ahead_m + spread_m + kFromFace_m);
-  const Belief before = spread_about(via, turn.belief, from.mean, rollout_);
-  if (before.particles.empty()) return false;
+  const Belief before = moved_to(via, turn.belief, from.mean, task_);
+  const bool collides =
+      std::any_of(before.particles.begin(), before.particles.end(),
+                  [&](const Particle& particle) { return rollout_.in_collision(particle.tool()); });
+  if (collides) return false;
 
   const double way_m = kFromFace_m + 2.0 * spread_m + task_.step_m;
   if (way_m > longest_move(task_, axis)) return false;
@@ -176,7 +193,7 @@ bool TouchTurns::push(const Turn& turn, const TouchPlace& side, int axis, int si
   if (!ends.front() || !on_face(*ends.front(), axis, sign)) return false;
 
   const double left = left_of(*ends.front());
-  Turn touched{*ends.front(), turn.contacts, left, turn.passed + left, from.spread};
+  Turn touched{*ends.front(), turn.contacts, left, turn.passed + left, spread};
   if (left > turn.left - kWorth) return false;
   const BeliefSummary end = summarise(touched.belief, task_);
   if (end.mean.orientation.angularDistance(task_.goal.orientation) > kTurnedMax_rad) return false;

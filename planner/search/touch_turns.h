@@ -26,9 +26,9 @@ class TouchTurns {
 
   /// Guides, first those that reach the goal's certainty, with the least uncertain on the way. At
   /// every turn each side of each shape is pushed against whose flat part is wider than what is
-  /// uncertain across the push, with the tool's origin over it. Of the touches that free legs lead
-  /// to the two go on that leave the least, until the goal's certainty is reached or no touch adds
-  /// to it.
+  /// uncertain across the push, with the tool's origin over it; else where it is round. Of the
+  /// touches that free legs lead to the two go on that leave the least, until the goal's certainty
+  /// is reached or no touch adds to it.
   [[nodiscard]] std::vector<Guide> find();
 
  private:
@@ -48,6 +48,7 @@ class TouchTurns {
   void further(const Turn& turn, std::vector<Turn>& next);
   void touch_sides(const Turn& turn, const Shape& shape, int axis, int sign,
                    std::vector<Turn>& next);
+  [[nodiscard]] Vector6 spread_at(const Pose& place, const Turn& turn) const;
   bool push(const Turn& turn, const TouchPlace& side, int axis, int sign, std::vector<Turn>& next);
   [[nodiscard]] std::vector<Turn> best_of(std::vector<Turn> turns);
   [[nodiscard]] bool in_legs(const Turn& turn);

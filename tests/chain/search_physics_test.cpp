@@ -20,7 +20,7 @@
 namespace tenon::planner {
 namespace {
 
-enum class Lie { kNone, kRandom, kAlwaysReached, kFlipped };
+enum class Lie { kNone, kRandom, kAlwaysReached, kFlipped, kTempting };
 
 /// ODE's, with a lie about some of the moves. Which, and what about, depends on the move alone.
 class LyingRollout final : public Rollout {
@@ -54,6 +54,9 @@ class LyingRollout final : public Rollout {
       case Lie::kFlipped:
         end.position_m = particle.pose.position_m - (end.position_m - particle.pose.position_m);
         break;
+      case Lie::kTempting:  // nearer to the goal, and to each other, than anything has brought them
+        end.position_m = 0.5 * (end.position_m + task_.goal.position_m);
+        break;
     }
     return result;
   }
@@ -80,7 +83,7 @@ Tally plan_on_lies(const std::string& name) {
   const Task task = load_task(tests::in_tree("planner/tasks/" + name + ".yaml"));
   const sim::OdeRollout truth(task);
   Tally tally;
-  for (const Lie lie : {Lie::kRandom, Lie::kAlwaysReached, Lie::kFlipped}) {
+  for (const Lie lie : {Lie::kRandom, Lie::kAlwaysReached, Lie::kFlipped, Lie::kTempting}) {
     for (const unsigned one_in : {1U, 20U}) {
       const LyingRollout lying(task, lie, one_in);
       PlannerOptions options;

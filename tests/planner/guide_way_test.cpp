@@ -135,7 +135,7 @@ struct FollowedRoom {
              SuccessorEngine::Edges::kTaken) {}
 
   [[nodiscard]] std::optional<std::vector<Vector6>> follow(const Guide& guide) {
-    return follow_guide(guide, task, start, task.starts.front().pose, succ, pool.front());
+    return follow_guide(guide, task, start, task.starts.front().pose, succ, pool.front(), &left);
   }
 
   Task task;
@@ -143,6 +143,7 @@ struct FollowedRoom {
   RolloutPool pool;
   Belief start;
   SuccessorEngine succ;
+  std::string left;  ///< where it was followed no farther
 };
 
 ContactAttractor wall(int axis, int sign, double at_m) {
@@ -181,10 +182,12 @@ TEST(FollowGuide, SaysSoWhereItDoesNotLeadToTheGoal) {
   FollowedRoom room(own_room_task());
   // y stays as uncertain as it was.
   EXPECT_FALSE(room.follow({{wall(0, -1, -0.5)}, {room.task.goal}, 1.0}));
+  EXPECT_EQ(room.left, "the goal: the part does not go in");
   // The push would begin in the wall.
   ContactAttractor behind = wall(1, -1, -0.4);
   behind.via->position_m.y() = -0.6;
   EXPECT_FALSE(room.follow({{wall(0, -1, -0.5), behind}, {room.task.goal}, 1.0}));
+  EXPECT_EQ(room.left, "its touch 2: no straight legs lead there");
 }
 
 }  // namespace

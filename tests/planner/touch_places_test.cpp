@@ -112,5 +112,25 @@ TEST(TouchPlaces, ObliqueSidesFaceNoPush) {
   EXPECT_EQ(touch_places(u, 2, -1, 1.0, Vector3::Zero()).size(), 1U);
 }
 
+TEST(TouchPlaces, ARoundSideIsPushedAgainstWhereItIsForemost) {
+  Profile round;
+  for (int i = 0; i < 96; ++i) {
+    const double at_rad = 2.0 * 3.14159265358979 * (i + 0.5) / 96.0;
+    round.emplace_back(0.02 * std::cos(at_rad), 0.02 * std::sin(at_rad));
+  }
+  const Shape cylinder = drawn_out(round, 0.03, {{0.1, 0.0, 0.0}, {1, 0, 0, 0}});
+  for (const int sign : {1, -1}) {
+    const auto places = round_places(cylinder, 1, sign, {0.0, 0.0, 0.1});
+    ASSERT_EQ(places.size(), 1U);
+    EXPECT_NEAR(places[0].at_m.y(), -sign * 0.02, 0.02e-3);
+    EXPECT_NEAR(places[0].at_m.x(), 0.1, 0.5e-3);
+    // As high as what slopes by 25 degrees is away to either side.
+    EXPECT_NEAR(places[0].to_rim_m, 0.02 * std::sin(25.0 * 3.14159 / 180.0), 1e-3);
+    EXPECT_NEAR(places[0].at_m.z(), 0.015 - places[0].to_rim_m, 1.5e-3);
+  }
+  EXPECT_TRUE(round_places(cylinder, 2, -1, Vector3::Zero()).empty());
+  EXPECT_TRUE(round_places(drawn_out(kU, 0.03, {}), 0, 1, Vector3::Zero()).empty());
+}
+
 }  // namespace
 }  // namespace tenon::planner

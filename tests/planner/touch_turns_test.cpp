@@ -13,6 +13,7 @@
 #include "planner/planner.h"
 #include "planner/search/attractors.h"
 #include "planner/search/guide_way.h"
+#include "planner/search/placing.h"
 #include "planner/search_moves.h"
 #include "tests/planner/room_task.h"
 
@@ -182,6 +183,24 @@ TEST(TouchTurns, LeaveASideThatIsNarrowerThanWhatIsUncertain) {
   }
 }
 
+TEST(MovedTo, WhatIsTurnedIsOffByAsMuchAsThePlaceIsAway) {
+  Turns turns(0.04);
+  Belief belief = cross_polytope(turns.task, turns.start);
+  belief.particles.resize(1);
+  const Pose start = belief.particles.front().pose;
+  belief.particles.front().environment = {Vector3::Zero(), rotation_of({0.0, 0.0, 0.05})};
+  const auto seen = [](const Belief& there) { return there.particles.front().tool().position_m; };
+  for (const double away_m : {0.0, 0.1, 0.2}) {
+    Pose place = start;
+    place.position_m = {away_m, 0.0, 0.1};
+    const Belief there = moved_to(place, belief, start, turns.task);
+    // The environment is turned about the task's origin, the tool as it was.
+    EXPECT_NEAR(seen(there).y(), -std::sin(0.05) * away_m, 1e-9);
+    EXPECT_NEAR(seen(there).x(), std::cos(0.05) * away_m, 1e-9);
+    EXPECT_EQ(there.particles.front().signature.bits, 0);
+  }
+}
+
 TEST(TouchTurns, AreAskedForWhereRotationsAreUncertain) {
   Turns turns(0.04);
   const Belief start = cross_polytope(turns.task, turns.start);
@@ -193,7 +212,7 @@ TEST(TouchTurns, AreAskedForWhereRotationsAreUncertain) {
   const Attractors found =
       find_attractors(turns.task, start, turns.succ, turns.pool.front(), {}, in_turn);
   EXPECT_EQ(asked, 1);
-  EXPECT_TRUE(found.in_turn);
+  EXPECT_FALSE(found.turns.empty());
   EXPECT_EQ(found.unsettled, 0);
   ASSERT_FALSE(found.candidates.empty());
   EXPECT_NE(found.candidates.front().contacts.front().flat, 0);
