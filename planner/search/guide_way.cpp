@@ -69,13 +69,14 @@ class Walk {
       if (!move_to(in)) return false;
       if (at_goal(here(), task_)) return true;
     }
-    return false;
+    return stuck("the part does not go in");
   }
 
   /// Over the goal along the longest way there first. @return whether one of them leads in
   bool arrive() {
-    if (turned() && here().uncertainty_m2 > kNearlyCertain * task_.goal_uncertainty_m2)
-      return false;
+    if (turned() && here().uncertainty_m2 > kNearlyCertain * task_.goal_uncertainty_m2) {
+      return stuck("more is uncertain than the goal takes");
+    }
     const Mark touched = mark();
     for (const int axis : by_way(clear_, task_.goal)) {
       if (!has(task_.coordinates, axis)) continue;
@@ -171,7 +172,7 @@ class Walk {
   Belief belief_;
   std::vector<Vector6> moves_;
   std::vector<Pose> waypoints_;  ///< of the mean, all free: where legs have begun and ended
-  std::string why_ = "the part does not go in";
+  std::string why_;
 };
 
 }  // namespace
