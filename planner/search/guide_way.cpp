@@ -74,7 +74,8 @@ class Walk {
 
   /// Over the goal along the longest way there first. @return whether one of them leads in
   bool arrive() {
-    if (turned() && here().uncertainty_m2 > kNearlyCertain * task_.goal_uncertainty_m2) {
+    const BeliefSummary there = summarise(moved_to(task_.goal, belief_, here().mean, task_), task_);
+    if (turned() && there.uncertainty_m2 > kNearlyCertain * task_.goal_uncertainty_m2) {
       return stuck("more is uncertain than the goal takes");
     }
     const Mark touched = mark();

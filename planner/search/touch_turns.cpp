@@ -63,11 +63,17 @@ TouchTurns::TouchTurns(const Task& task, const Belief& start, const Pose& clear,
     enough_[axis] = enough_m / std::sqrt(metric.variance_weight(axis));
 }
 
-/// Along each axis about the mean.
+/// What a touch tells of a place is worth as much as the angles leave of it there.
+Belief TouchTurns::over_goal(const Belief& belief) const {
+  return moved_to(task_.goal, belief, mean_pose(belief), task_);
+}
+
+/// Along each axis about the mean, at the goal.
 Vector6 TouchTurns::deviation(const Belief& belief) const {
-  const Pose about = mean_pose(belief);
+  const Belief there = over_goal(belief);
+  const Pose about = mean_pose(there);
   Vector6 squares = Vector6::Zero();
-  for (const Particle& particle : belief.particles) {
+  for (const Particle& particle : there.particles) {
     squares += displacement_between(about, particle.tool()).cwiseAbs2();
   }
   return (squares / static_cast<double>(belief.particles.size())).cwiseSqrt();
@@ -137,24 +143,35 @@ void TouchTurns::further(const Turn& turn, std::vector<Turn>& next) {
 
 void TouchTurns::touch_sides(const Turn& turn, const Shape& shape, int axis, int sign,
                              std::vector<Turn>& next) {
-  Pose before = {shape.pose.position_m, task_.goal.orientation};
-  before.position_m[axis] = -sign * around({shape}).sizes()[axis];
+  const Eigen::AlignedBox3d box = around({shape});
+  Pose before = {box.center(), task_.goal.orientation};
+  before.position_m[axis] = sign > 0 ? box.min()[axis] : box.max()[axis];
   const Vector6 spread = spread_at(before, turn);
   double across_m = 0.0;
   for (int other = 0; other < 3; ++other) {
     if (other != axis) across_m = std::max(across_m, spread[other]);
   }
+  // Sides that are narrower than what is uncertain come last: what is off across them need not be
+  // off together, and each push shows whether any start misses.
   const double middle_m = across_m + 0.5 * part_.sizes().maxCoeff();
+  std::vector<TouchPlace> narrow;
   std::vector<Vector3> tried;
   for (const double enough_m : {across_m + kToRim_m, middle_m}) {
     for (const TouchPlace& side : touch_places(shape, axis, sign, enough_m, clear_.position_m)) {
       const bool again = std::any_of(tried.begin(), tried.end(), [&](const Vector3& at_m) {
         return (at_m - side.at_m).norm() < task_.step_m;
       });
-      if (again || side.to_rim_m < across_m || stopped()) continue;
+      if (again || stopped()) continue;
       tried.push_back(side.at_m);
-      if (push(turn, side, axis, sign, next)) return;
+      if (side.to_rim_m < across_m) {
+        narrow.push_back(side);
+      } else if (push(turn, side, axis, sign, next)) {
+        return;
+      }
     }
+  }
+  for (const TouchPlace& side : narrow) {
+    if (stopped() || push(turn, side, axis, sign, next)) return;
   }
   // What is off across a round side is off along it by less, and after the other axis by less
   // again.
@@ -197,7 +214,8 @@ bool TouchTurns::push(const Turn& turn, const TouchPlace& side, int axis, int si
   if (left > turn.left - kWorth) return false;
   const BeliefSummary end = summarise(touched.belief, task_);
   if (end.mean.orientation.angularDistance(task_.goal.orientation) > kTurnedMax_rad) return false;
-  ContactAttractor contact{axis, sign, end.mean, end.spread[axis], end.uncertainty_m2, true, via};
+  const double left_m2 = uncertainty(over_goal(touched.belief), metric_of(task_));
+  ContactAttractor contact{axis, sign, end.mean, end.spread[axis], left_m2, true, via};
   for (int turned = 3; turned < 6; ++turned) {
     if (turned != 3 + axis && from.spread[turned] > enough_[turned] &&
         end.spread[turned] < task_.attractor_ratio * from.spread[turned]) {

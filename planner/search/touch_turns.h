@@ -25,10 +25,10 @@ class TouchTurns {
              Rollout& rollout, const std::function<bool()>& stop);
 
   /// Guides, first those that reach the goal's certainty, with the least uncertain on the way. At
-  /// every turn each side of each shape is pushed against whose flat part is wider than what is
-  /// uncertain across the push, with the tool's origin over it; else where it is round. Of the
-  /// touches that free legs lead to the two go on that leave the least, until the goal's certainty
-  /// is reached or no touch adds to it.
+  /// every turn each side of each shape is pushed against with the tool's origin over it: where it
+  /// is flat, first what is wider than what is uncertain across the push, else where it is round.
+  /// Of the touches that free legs lead to the two go on that leave the least, until the goal's
+  /// certainty is reached or no touch adds to it.
   [[nodiscard]] std::vector<Guide> find();
 
  private:
@@ -41,6 +41,7 @@ class TouchTurns {
     Vector6 before = Vector6::Zero();  ///< spread with which the last touch began
   };
 
+  [[nodiscard]] Belief over_goal(const Belief& belief) const;
   [[nodiscard]] Vector6 deviation(const Belief& belief) const;
   [[nodiscard]] double left_of(const Belief& belief) const;
   [[nodiscard]] bool certain(const Belief& belief) const;

@@ -27,8 +27,11 @@ constexpr double kHeight_m = 0.04;
 /// at a side, and whatever turns it about axes along that side is gone then.
 class BlockRollout final : public Rollout {
  public:
-  explicit BlockRollout(double half_m)
-      : low_m_(-half_m, -half_m, kTop_m - kHeight_m), high_m_(half_m, half_m, kTop_m) {}
+  /// What a wall leaves of a turn about z: of a round part all.
+  enum class Yaw : std::uint8_t { kSettled, kLeft };
+
+  explicit BlockRollout(double half_m, Yaw yaw = Yaw::kSettled)
+      : low_m_(-half_m, -half_m, kTop_m - kHeight_m), high_m_(half_m, half_m, kTop_m), yaw_(yaw) {}
 
   [[nodiscard]] RolloutResult simulate(const Particle& particle, const MoveParameters& move,
                                        std::int64_t /*step_us*/,
@@ -53,7 +56,9 @@ class BlockRollout final : public Rollout {
     to.position_m += part * way_m;
     if (face >= 0) {
       const Vector3 turn_rad = rotation_vector(from.orientation);
-      to.orientation = rotation_of(turn_rad[face] * Vector3::Unit(face));
+      Vector3 left_rad = turn_rad[face] * Vector3::Unit(face);
+      if (yaw_ == Yaw::kLeft) left_rad.z() = turn_rad.z();
+      to.orientation = rotation_of(left_rad);
       result.move.outcome = Outcome::kContact;
       result.move.signature.bits = ContactSignature::bit(face, way_m[face] > 0.0 ? -1 : 1);
     }
@@ -66,7 +71,7 @@ class BlockRollout final : public Rollout {
     return (p > low_m_.array()).all() && (p < high_m_.array()).all();
   }
   [[nodiscard]] std::unique_ptr<Rollout> clone() const override {
-    return std::make_unique<BlockRollout>(high_m_.x());
+    return std::make_unique<BlockRollout>(high_m_.x(), yaw_);
   }
 
  private:
@@ -82,6 +87,7 @@ class BlockRollout final : public Rollout {
 
   Vector3 low_m_;
   Vector3 high_m_;
+  Yaw yaw_;
 };
 
 Task block_task(double half_m) {
@@ -107,10 +113,12 @@ Task block_task(double half_m) {
 }
 
 struct Turns {
-  explicit Turns(double half_m)
-      : task(block_task(half_m)),
+  explicit Turns(double half_m) : Turns(block_task(half_m), BlockRollout(half_m)) {}
+
+  Turns(Task what, const BlockRollout& rollout)
+      : task(std::move(what)),
         start(task.starts.front()),
-        pool(BlockRollout(half_m), 1),
+        pool(rollout, 1),
         succ(pool, search_move(task, start, {}), task.rollout_step_us,
              SuccessorEngine::Edges::kTaken) {}
 
@@ -161,6 +169,23 @@ TEST(TouchTurns, FollowedToTheLetterLeadToTheGoal) {
     EXPECT_LT(off.head<3>().norm(), 0.1e-3);
     EXPECT_LT(off.tail<3>().norm(), 1e-3);
   }
+}
+
+// A wall away from the goal tells where a part is there; what it leaves across grows with the yaw,
+// and none of that is left at the goal.
+TEST(TouchTurns, OfAPartWhoseYawNothingSettlesAreWorthWhatTheyTellAtTheGoal) {
+  constexpr double kHalf_m = 0.15;
+  Task task = block_task(kHalf_m);
+  task.goal_axes.free = 0b100000;
+  for (const int known : {2, 3, 4}) task.starts.front().sigma[known] = 0.0;
+  Turns turns(task, BlockRollout(kHalf_m, BlockRollout::Yaw::kLeft));
+  const std::vector<Guide> guides = turns.find();
+  ASSERT_FALSE(guides.empty());
+  ASSERT_EQ(guides.front().contacts.size(), 2U);
+  EXPECT_LE(guides.front().contacts.back().uncertainty_m2, turns.task.goal_uncertainty_m2);
+  const Belief start = corner_belief(turns.task, turns.start);
+  EXPECT_TRUE(follow_guide(guides.front(), turns.task, start, turns.start.pose, turns.succ,
+                           turns.pool.front()));
 }
 
 TEST(TouchTurns, AreFollowedByTheTruePhysicsWhereTheOtherHadAKnownStartWrong) {
