@@ -17,6 +17,7 @@ constexpr int kPlaces = 80;
 constexpr double kAside_m = 1e-3;
 constexpr double kPlayStep_m = 50e-6;  // while the parts touch: less than any wall
 constexpr double kPlayResolution_m = 5e-6;
+constexpr double kTurnStep_rad = 2e-3;
 constexpr double kRounding_m = 1e-9;
 // How many of the plug's largest flat directions are tried beside the axes of the file.
 constexpr std::size_t kDirectionsMax = 6;
@@ -111,6 +112,25 @@ class Fitting {
     return false;
   }
 
+  /// About a way through its middle, from a place: the mean of both ways until the parts touch, or
+  /// overlap more than they did there.
+  [[nodiscard]] double turn_rad(const Vector3& way, const Vector3& from_m) const {
+    const auto gap_at = [&](double angle_rad) {
+      const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle_rad, way));
+      return gap_.gap_m({X_EH_.position_m + from_m, turn * X_EH_.orientation}, kAside_m);
+    };
+    const double least_m = std::min(0.0, gap_at(0.0)) - kRounding_m;
+    double both_rad = 0.0;
+    for (const double sign : {1.0, -1.0}) {
+      double free_rad = 0.0;
+      while (free_rad < kMostTurn_rad && gap_at(sign * (free_rad + kTurnStep_rad)) >= least_m) {
+        free_rad += kTurnStep_rad;
+      }
+      both_rad += free_rad;
+    }
+    return std::min(kMostTurn_rad, 0.5 * both_rad);
+  }
+
   /// The file's axes, up first, and those in which the plug has its largest flat faces.
   [[nodiscard]] std::vector<Vector3> directions() const {
     std::vector<Vector3> ways = {Vector3::UnitZ(),  -Vector3::UnitZ(), Vector3::UnitX(),
@@ -186,7 +206,12 @@ PartFit fit_of(const std::shared_ptr<const Solid>& plug, const std::shared_ptr<c
   const double most_m = *std::max_element(fit.play_m.begin(), fit.play_m.end());
   const bool loose = most_m > plug->size_m().maxCoeff();
   fit.depth_m = loose ? first_m : fitting.depth_m(way, fit.clear_m, most_m + kAside_m);
-  fit.yaw_matters = fitting.held_about(way, 0.5 * fit.depth_m * way);
+  const Vector3 half_way_m = 0.5 * fit.depth_m * way;
+  fit.yaw_matters = fitting.held_about(way, half_way_m);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    fit.turn_rad[axis] = std::min(kMostTurn_rad, fit.play_m[1 - axis] / fit.depth_m);
+  }
+  fit.turn_rad[2] = fitting.turn_rad(way, half_way_m);
   return fit;
 }
 

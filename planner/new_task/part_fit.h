@@ -19,12 +19,18 @@ struct PartFit {
   /// What the plug can move aside, both ways together, half-way in: across the way out, in the axes
   /// of a frame whose z is the way out (frame_along()).
   std::array<double, 2> play_m{};
+  /// How far it may stand turned about each of them as it sits there, either way: askew by its play
+  /// over its depth; about the way out as far as it is free half-way in. At most kMostTurn_rad.
+  std::array<double, 3> turn_rad{};
   /// Turned about the way out it would not go in.
   bool yaw_matters = false;
 };
 
 /// Overlaps up to this are parts that touch, m.
 inline constexpr double kTouching_m = 50e-6;
+
+/// A part that is free to turn by more is loose, rad.
+inline constexpr double kMostTurn_rad = 0.2;
 
 /// @param X_SP the plug's file in the socket's
 [[nodiscard]] PartFit fit_of(const std::shared_ptr<const Solid>& plug,

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "planner/new_task/push_middle.h"
@@ -17,6 +18,10 @@ constexpr double kFreeOfDepth = 0.1;
 constexpr double kToleranceMax_m = 2e-3;
 constexpr double kToleranceOfDepth = 0.2;
 constexpr double kToleranceMin_m = 5e-4;
+// So many times as far as it may stand turned in its place: half of it is the arm's.
+constexpr double kTurnsOfPlay = 2.0;
+constexpr double kTurnMin_rad = 0.01;
+constexpr double kTurnMax_rad = 0.1;
 // A part that is pressed against a wall turns about the tool's origin until it lies flat, for which
 // the origin has to be above what the tip's chamfer leaves out of the wall.
 constexpr double kOriginMax_m = 5e-3;
@@ -134,15 +139,30 @@ std::string start_text(const NewTask& task, const Numbers& n) {
   return text;
 }
 
+/// The goal's angles: whatever the place that the part goes into leaves it.
+std::string turns_text(const NewTask& task) {
+  if (task.uniform_rad == 0.0) return "";
+  constexpr std::array<const char*, 3> kNames = {"rx_rad", "ry_rad", "rz_rad"};
+  std::string axes;
+  for (std::size_t axis = 0; axis < (task.fit.yaw_matters ? 3U : 2U); ++axis) {
+    const double turn_rad =
+        std::clamp(kTurnsOfPlay * task.fit.turn_rad[axis], kTurnMin_rad, kTurnMax_rad);
+    axes += format("%s%s: %.3g", axis == 0 ? "" : ", ", kNames[axis], turn_rad);
+  }
+  return "  # Twice what it may stand askew by where it goes in.\n  tolerances: {" + axes + "}\n" +
+         (task.fit.yaw_matters ? ""
+                               : "  # However it is turned about its way, it goes in.\n"
+                                 "  free: [rz]\n");
+}
+
 std::string goal_text(const NewTask& task, const Numbers& n) {
   const double aside_m =
       2.0 * n.tolerance_m + *std::max_element(task.fit.play_m.begin(), task.fit.play_m.end());
-  const bool free = task.uniform_rad > 0.0 && !task.fit.yaw_matters;
   return format(
              "\n# Clear of the bottom by %.3g mm.\ngoal:\n  pose: {position_m: [0, 0, %.6g]}\n"
              "  tolerance_m: %.6g\n",
              1e3 * n.goal_z_m, n.goal_z_m, n.tolerance_m) +
-         (free ? "  # However it is turned about its way, it goes in.\n  free: [rz]\n" : "") +
+         turns_text(task) +
          format(
              "  # The tip is as deep as assembled, within the tolerance.\n"
              "  inserted: {box_m: [%.6g, %.6g, %.6g], pose: {position_m: [0, 0, %.6g]}}\n",

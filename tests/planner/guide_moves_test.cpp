@@ -95,5 +95,37 @@ TEST(GoalCertainty, IsAQuarterOfTheRoomThatTheGoalLeaves) {
   EXPECT_NEAR(with_goal_certainty(task, open).goal_uncertainty_m2, 2e-6, 1e-9);
 }
 
+/// Room for a turn about z by 0.01 rad either way, and for any way.
+class NarrowTurn final : public Rollout {
+ public:
+  [[nodiscard]] RolloutResult simulate(const Particle& /*particle*/, const MoveParameters& /*move*/,
+                                       std::int64_t /*step_us*/,
+                                       std::vector<TraceSample>* /*trace*/) override {
+    return {};
+  }
+  [[nodiscard]] bool in_collision(const Pose& tool) override {
+    return std::abs(rotation_vector(tool.orientation).z()) > 0.01;
+  }
+  [[nodiscard]] std::unique_ptr<Rollout> clone() const override {
+    return std::make_unique<NarrowTurn>();
+  }
+};
+
+TEST(GoalCertainty, CountsTheRoomOfAnAngleThatHasAToleranceOfItsOwn) {
+  Task task = room_task();
+  task.coordinates = 0b100011;
+  task.goal_uncertainty_m2 = 0.0;
+  NarrowTurn rollout;
+  const double any_m2 = with_goal_certainty(task, rollout).goal_uncertainty_m2;
+  // An eighth of what the axis may be off by: so much of the goal's tolerance, halved.
+  task.goal_axes.tolerance[5] = 0.08;
+  const double deviation_m = 0.5 * task.goal_tolerance_m / 8.0;
+  EXPECT_NEAR(with_goal_certainty(task, rollout).goal_uncertainty_m2,
+              3.0 * deviation_m * deviation_m, 0.03 * deviation_m * deviation_m);
+  // There is enough.
+  task.goal_axes.tolerance[5] = 0.005;
+  EXPECT_NEAR(with_goal_certainty(task, rollout).goal_uncertainty_m2, any_m2, 1e-12);
+}
+
 }  // namespace
 }  // namespace tenon::planner

@@ -9,6 +9,7 @@
 #include "shared/config/load.h"
 #include "shared/config/part_file.h"
 #include "shared/geometry/extrusion.h"
+#include "shared/task/inserted.h"
 #include "sim/physics/rollout/ode_rollout.h"
 #include "tests/support/example_parts.h"
 #include "tests/support/meshes.h"
@@ -155,9 +156,26 @@ TEST(NewTask, ARoundPegsYawIsUncertainAndFreeAtTheGoal) {
   EXPECT_EQ(task.coordinates, 0b111111);
   EXPECT_GT(task.starts.front().sigma[5], 0.0);
   EXPECT_EQ(task.goal_axes.free, 0b100000);
-  EXPECT_FALSE(load_task(Written(0.05).file).goal_axes.any());
   EXPECT_FALSE(
       load_task(Written(0.0, round_peg(10e-3), round_socket(10.3e-3)).file).goal_axes.any());
+}
+
+// A part that stands askew by all that its hole leaves it has gone in, and one that is farther
+// askew than that by half again has not.
+TEST(NewTask, TheGoalTakesWhateverAngleTheHoleLeaves) {
+  const Written written(0.05);
+  const PartFit& fit = written.task.fit;
+  EXPECT_NEAR(fit.turn_rad[0], 1e-3 / 30e-3, 3e-3);
+  EXPECT_NEAR(fit.turn_rad[1], 1e-3 / 30e-3, 3e-3);
+  EXPECT_GT(fit.turn_rad[2], 0.01);
+  const Task task = load_task(written.file);
+  sim::OdeRollout physics(task);
+  for (int axis = 3; axis < 6; ++axis) {
+    const double most_rad = fit.turn_rad[static_cast<std::size_t>(axis - 3)];
+    EXPECT_NEAR(task.goal_axes.tolerance[axis], 2.0 * most_rad, 1e-3);
+    EXPECT_TRUE(within_tolerance(task, displaced(task.goal, most_rad * Vector6::Unit(axis))));
+    EXPECT_TRUE(physics.in_collision(displaced(task.goal, 1.5 * most_rad * Vector6::Unit(axis))));
+  }
 }
 
 TEST(NewTask, ATurningPartIsHeldAboveItsChamfer) {
