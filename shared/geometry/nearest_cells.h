@@ -1,7 +1,8 @@
 #pragma once
 // What a tree of triangles says of the nearest one, sooner: space is cut into cells, and each cell
-// remembers which triangles can be nearest to a point in it, from the first question on. Any number
-// of threads may ask at once.
+// remembers which triangles can be nearest to a point in it, from the first question on. Where
+// these are many, as within a round hole, a cell is cut into eight again. Any number of threads may
+// ask at once.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -28,16 +29,23 @@ class NearestCells {
                                           std::uint32_t guess) const;
 
  private:
-  /// In ascending order; empty where they are so many that the tree is as fast.
-  using Candidates = std::vector<std::uint32_t>;
+  struct Cell;
+  using Slot = std::atomic<const Cell*>;  ///< null: not asked for yet
+  struct Cell {
+    /// In ascending order; empty where they are so many that the tree is as fast.
+    std::vector<std::uint32_t> near;
+    std::unique_ptr<std::array<Slot, 8>> parts;  ///< null: not cut again
+    ~Cell();
+  };
 
-  [[nodiscard]] const Candidates& candidates(const TriangleTree& tree, std::size_t cell,
-                                             const Vector3& middle_m) const;
+  /// @param level 0 of the first cells, each level's are half as large
+  [[nodiscard]] const Cell& cell_in(Slot& slot, const TriangleTree& tree, const Vector3& middle_m,
+                                    int level) const;
 
   double cell_m_;
   Vector3 low_m_;  ///< the corner of the first cell
   std::array<std::size_t, 3> count_{};
-  std::unique_ptr<std::atomic<const Candidates*>[]> cells_;  ///< null: not asked for yet
+  std::unique_ptr<Slot[]> cells_;
 };
 
 }  // namespace tenon

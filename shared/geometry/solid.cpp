@@ -141,11 +141,15 @@ Solid::Place Solid::place(const Vector3& point_m, std::uint32_t guess) const {
   return place_at(point_m, cells_.nearest(tree_, point_m, guess));
 }
 
+double Solid::once_m(const Vector3& point_m, std::uint32_t guess) const {
+  return place_at(point_m, tree_.nearest(point_m, guess)).distance_m;
+}
+
 Solid::Place Solid::sampled_place(const Vector3& point_m, std::uint32_t guess) const {
   // Where walls on both sides are as near, the lattice knows of no way outwards.
   constexpr double kSteepMin = 0.05;
   const auto sample =
-      grid_.at(point_m, [&](const Vector3& node_m) { return place(node_m, guess).distance_m; });
+      grid_.at(point_m, [&](const Vector3& node_m) { return once_m(node_m, guess); });
   if (!sample) return place(point_m, guess);
   const double steep = sample->gradient.norm();
   if (steep < kSteepMin) return place(point_m, guess);
@@ -157,7 +161,7 @@ double Solid::distance_at_least_m(const Vector3& point_m) const {
   // Nodes are kept in single precision.
   constexpr double kRounding = 1e-6;
   const auto at_least_m =
-      grid_.at_least_m(point_m, [&](const Vector3& node_m) { return place(node_m).distance_m; });
+      grid_.at_least_m(point_m, [&](const Vector3& node_m) { return once_m(node_m, 0); });
   return at_least_m ? *at_least_m - kRounding * size_m_.maxCoeff() : place(point_m).distance_m;
 }
 

@@ -58,6 +58,8 @@ class Solid {
   void find_normals();
   void face_slivers(const TriangleOf& triangle_of);
   [[nodiscard]] Place place_at(const Vector3& point_m, const NearestOnTriangle& nearest) const;
+  /// The distance of a point that is never asked for again.
+  [[nodiscard]] double once_m(const Vector3& point_m, std::uint32_t guess) const;
   [[nodiscard]] const Vector3& normal_at(const NearestOnTriangle& nearest) const;
 
   Vector3 centre_m_;
