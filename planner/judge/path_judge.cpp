@@ -35,12 +35,15 @@ PathJudge::PathJudge(const Task& task, const Start& start, const Parameters& par
     : task_(task), start_(start), parameters_(parameters), pool_(pool), now_s_(std::move(now_s)) {}
 
 Judgement PathJudge::judge(std::span<const Vector6> displacements) {
+  missed_.clear();
   Plan slow = draft_plan(task_, start_, parameters_.assumptions, displacements);
   slow.method = parameters_.method;
   Certification at_contact_speed = certified(slow);
   if (!at_contact_speed.holds()) return refutation_of(at_contact_speed);
   if (slow.method != PlanMethod::kMha) {
-    return estimated(slow, std::move(at_contact_speed), extremes_of(slow));
+    const Extremes extremes{run(slow, corner_starts(slow, task_, start_, pool_.front())),
+                            rim_of(slow)};
+    return estimated(slow, std::move(at_contact_speed), extremes);
   }
   const std::vector<Chain>& aligned = at_contact_speed.runs.front().chains;
   if (auto plain = with_plain_touches(slow, aligned)) {
@@ -59,10 +62,12 @@ Judgement PathJudge::at_any_speed(Candidate slow) {
       slow_from(slow.plan, chains_of(slow.certification), task_.particle_sigmas);
   for (int attempt = 0; attempt < kSpeedAttempts && any_fast(distances_m); ++attempt) {
     Plan fast = with_slow_from(slow.plan, distances_m);
+    if (misses_again(fast)) break;
     Certification at_speed = certified(fast);
     Judgement judgement = at_speeds(centred(std::move(fast), std::move(at_speed)), distances_m);
     if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
   }
+  if (auto again = misses_again(slow.plan)) return *std::move(again);
   return at_speeds(centred(std::move(slow.plan), std::move(slow.certification)), distances_m);
 }
 
@@ -82,10 +87,9 @@ Judgement PathJudge::at_speeds(Candidate&& candidate, std::vector<double>& dista
     return refutation;
   };
   if (!certification.holds()) return refuted(refutation_of(certification));
-  const Extremes extremes = extremes_of(plan);
-  if (const Draw* miss = missed_draw(extremes.corners, task_.particle_sigmas)) {
-    return refuted(refutation_of(*miss, task_));
-  }
+  Extremes extremes{corners_of(plan), {}};
+  if (const auto miss = missed(extremes.corners)) return refuted(*miss);
+  extremes.rim = rim_of(plan);
   std::vector<Chain> good = good_chains(extremes.corners);
   append(good, good_chains(extremes.rim));
   const Chain& known = certification.runs.front().chains.front();
@@ -95,9 +99,7 @@ Judgement PathJudge::at_speeds(Candidate&& candidate, std::vector<double>& dista
   std::vector<Draw> draws;
   if (!shorten(plan, good, distances_m)) {
     draws = drawn(plan, kSearchSeed);
-    if (const Draw* miss = missed_draw(draws, task_.particle_sigmas)) {
-      return refuted(refutation_of(*miss, task_));
-    }
+    if (const auto miss = missed(draws)) return refuted(*miss);
     append(good, good_chains(draws));
   }
   if (draws.empty() || shorten(plan, good, distances_m)) {
@@ -121,9 +123,7 @@ std::variant<Plan, Refutation> PathJudge::widened(const Plan& plan, std::vector<
   Plan judged = with_envelopes(plan, task_, good);
   for (std::uint64_t batch = 0; batch < kEnvelopeBatches; ++batch) {
     const std::vector<Draw> further = drawn(plan, kEnvelopeSeed + batch);
-    if (const Draw* miss = missed_draw(further, task_.particle_sigmas)) {
-      return refutation_of(*miss, task_);
-    }
+    if (const auto miss = missed(further)) return *miss;
     const std::vector<Chain> more = good_chains(further);
     if (stay_within(judged, more)) break;
     append(good, more);
@@ -155,14 +155,34 @@ Certification PathJudge::certified(const Plan& plan) {
   return result;
 }
 
-PathJudge::Extremes PathJudge::extremes_of(const Plan& plan) {
-  return {run(plan, corner_starts(plan, task_, start_, pool_.front())),
-          run(plan, rim_starts(plan, task_, start_, pool_.front()))};
+std::vector<Draw> PathJudge::corners_of(const Plan& plan) {
+  return run_to_miss(plan, corner_starts(plan, task_, start_, pool_.front()));
+}
+
+std::vector<Draw> PathJudge::rim_of(const Plan& plan) {
+  return run(plan, rim_starts(plan, task_, start_, pool_.front()));
 }
 
 std::vector<Draw> PathJudge::drawn(const Plan& plan, std::uint64_t seed) {
-  const auto starts = drawn_starts(seed, parameters_.draws, DrawnPhysics::kCorners, plan, task_,
-                                   start_, pool_.front());
+  return run_to_miss(plan, drawn_starts(seed, parameters_.draws, DrawnPhysics::kCorners, plan,
+                                        task_, start_, pool_.front()));
+}
+
+std::optional<Refutation> PathJudge::misses_again(const Plan& plan) {
+  const std::vector<Draw> draws = run_to_miss(plan, missed_);
+  const Draw* miss = missed_draw(draws, task_.particle_sigmas);
+  if (miss == nullptr) return std::nullopt;
+  return refutation_of(*miss, task_);
+}
+
+std::optional<Refutation> PathJudge::missed(std::span<const Draw> draws) {
+  const Draw* miss = missed_draw(draws, task_.particle_sigmas);
+  if (miss == nullptr) return std::nullopt;
+  missed_.push_back({miss->chain.start, miss->sigmas_out});
+  return refutation_of(*miss, task_);
+}
+
+std::vector<Draw> PathJudge::run_to_miss(const Plan& plan, std::span<const JudgedStart> starts) {
   return run(plan, starts, [this](const Draw& draw) {
     return !draw.at_goal && draw.sigmas_out <= task_.particle_sigmas;
   });

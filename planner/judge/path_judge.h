@@ -91,12 +91,20 @@ class PathJudge {
   [[nodiscard]] std::optional<Refutation> beyond_reach(const Plan& plan, const Chain& known) const;
   [[nodiscard]] Judgement estimated(Plan plan, Certification certification,
                                     const Extremes& extremes);
+  /// Where a start that this path has missed at other speeds or otherwise pressed, misses again.
+  [[nodiscard]] std::optional<Refutation> misses_again(const Plan& plan);
+  /// Of draws that may refute: the first miss, which is remembered.
+  [[nodiscard]] std::optional<Refutation> missed(std::span<const Draw> draws);
   [[nodiscard]] Certification certified(const Plan& plan);
-  [[nodiscard]] Extremes extremes_of(const Plan& plan);
-  /// Draws that may refute, every second one at a corner of friction and size.
+  [[nodiscard]] std::vector<Draw> rim_of(const Plan& plan);
+  /// These and the draws may refute, and end with the first miss; of the draws every second one is
+  /// at a corner of friction and size.
+  [[nodiscard]] std::vector<Draw> corners_of(const Plan& plan);
   [[nodiscard]] std::vector<Draw> drawn(const Plan& plan, std::uint64_t seed);
   [[nodiscard]] std::vector<Draw> run(const Plan& plan, std::span<const JudgedStart> starts,
                                       const std::function<bool(const Draw&)>& until = {});
+  [[nodiscard]] std::vector<Draw> run_to_miss(const Plan& plan,
+                                              std::span<const JudgedStart> starts);
 
   const Task& task_;
   const Start& start_;
@@ -104,6 +112,7 @@ class PathJudge {
   RolloutPool& pool_;
   ClockSeconds now_s_;
   JudgeEffort effort_;
+  std::vector<JudgedStart> missed_;  ///< by the path that is judged
 };
 
 }  // namespace tenon::planner
