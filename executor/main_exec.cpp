@@ -1,6 +1,5 @@
 // tenon-exec: runs a plan on an arm over CAN. Only composes; see executor/README.md.
 
-#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "executor/dry_run/plan_check.h"
 #include "executor/identification/identification.h"
 #include "executor/loop/controller.h"
+#include "executor/loop/stop_requests.h"
 #include "executor/main_exec_options.h"
 #include "executor/main_exec_output.h"
 #include "executor/main_exec_run.h"
@@ -29,7 +29,7 @@
 namespace tenon::executor {
 namespace {
 
-std::atomic<bool> stop_asked{false};
+StopRequests stop_asked;
 
 int run_plan(const Options& options, const Cell& cell, const DryRun& dry_run) {
   Controller::Parameters parameters;
@@ -87,7 +87,7 @@ int execute(const Options& options) {
   hw::check_bus_load(cell.robot);
   hw::check_response_times(cell.robot);
   if (options.identifies()) {
-    stop_on_signals(stop_asked);
+    stop_on_signals(stop_asked.by_user, stop_asked.by_circumstance);
     return identify(options, cell);
   }
   DryRun run = dry_run(plan, cell);
@@ -99,7 +99,7 @@ int execute(const Options& options) {
                      "' cannot execute this plan: " + run.refusals.front());
   }
   if (options.dry_run) return 0;
-  stop_on_signals(stop_asked);
+  stop_on_signals(stop_asked.by_user, stop_asked.by_circumstance);
   print_opening(plan, cell, run);
   return run_plan(options, cell, run);
 }

@@ -24,6 +24,11 @@ void StepPrinter::consume(const CycleRecord& record) {
 }
 
 void HoldPrinter::consume(const CycleRecord& record) {
+  if (record.stops_unheeded != unheeded_) {
+    unheeded_ = record.stops_unheeded;
+    std::fputs("tenon-exec: the arm goes on being held; Ctrl-C or SIGTERM alone lets it go\n",
+               stderr);
+  }
   if (record.hold == printed_) return;
   printed_ = record.hold;
   const std::string line = hold_line(record, cell_, hw::fault_text(record.arm_fault, cell_.robot));

@@ -1,6 +1,7 @@
 #pragma once
 // What tenon-exec prints, and the JSON that it writes.
 
+#include <cstdint>
 #include <string>
 
 #include "executor/dry_run/dry_run.h"
@@ -27,7 +28,8 @@ class StepPrinter : public RecordConsumer {
 };
 
 /// Says at once, on standard error, that the run is over and a joint held until the user stops, and
-/// where it is not held any more; on the recorder's thread.
+/// where it is not held any more; and where it goes on being held though something would end it. On
+/// the recorder's thread.
 class HoldPrinter : public RecordConsumer {
  public:
   explicit HoldPrinter(const Cell& cell) : cell_(cell) {}
@@ -36,6 +38,7 @@ class HoldPrinter : public RecordConsumer {
  private:
   Cell cell_;
   Hold printed_ = Hold::kNone;
+  std::uint32_t unheeded_ = 0;
 };
 
 /// What is about to run where, and how the dry run slowed it.

@@ -82,7 +82,7 @@ std::array<std::uint32_t, BusPair::kBuses> frames_at_once(const Robot& robot) {
 }  // namespace
 
 TaskRun::TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
-                 std::atomic<bool>& stop)
+                 StopRequests& stop)
     : options_(options),
       task_(task),
       stop_(stop),
@@ -136,7 +136,7 @@ void TaskRun::run_arm() {
   ask_for_real_time(options_);
   constexpr std::int64_t kPoll_ns = 1'000'000;
   std::int64_t now_ns = monotonic_now_ns();
-  while (!stop_.load(std::memory_order_relaxed) && !arm_->prepare(now_ns)) {
+  while (!stop_.any() && !arm_->prepare(now_ns)) {
     if (arm_->state() == ArmState::kFault) throw InputError(hw::fault_text(arm_->fault(), robot()));
     arm_->wait(kPoll_ns);
     now_ns = monotonic_now_ns();

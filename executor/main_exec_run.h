@@ -2,7 +2,6 @@
 // One task on an arm over CAN: the bus, the loop on a thread of its own, and everything that writes
 // along.
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "executor/loop/control_task.h"
 #include "executor/loop/cycle_runner.h"
+#include "executor/loop/stop_requests.h"
 #include "executor/main_exec_options.h"
 #include "executor/main_exec_output.h"
 #include "executor/motion/plan_runner.h"
@@ -37,8 +37,7 @@ class TaskRun {
   /// @param steps of the plan that the task runs, null where it runs none
   /// @param stop set by anyone to end the run in good order
   /// @throws InputError where something cannot be opened
-  TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps,
-          std::atomic<bool>& stop);
+  TaskRun(const Options& options, ControlTask& task, const PlanRunner* steps, StopRequests& stop);
   ~TaskRun();
   TaskRun(const TaskRun&) = delete;
   TaskRun& operator=(const TaskRun&) = delete;
@@ -67,7 +66,7 @@ class TaskRun {
 
   const Options& options_;
   ControlTask& task_;
-  std::atomic<bool>& stop_;
+  StopRequests& stop_;
   std::unique_ptr<hw::Buses> buses_;
   std::unique_ptr<CanLog> can_log_;
   std::unique_ptr<hw::RecordingBus> logged_bus_;

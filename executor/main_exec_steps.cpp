@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <string>
@@ -20,7 +21,7 @@ constexpr std::size_t kLineMost = 80;  // a longer one is no word
 
 class UserWords::Listener {
  public:
-  Listener(Controller& controller, std::atomic<bool>& stop, bool step_by_step)
+  Listener(Controller& controller, StopRequests& stop, bool step_by_step)
       : controller_(controller), stop_(stop), step_by_step_(step_by_step) {
     thread_ = std::thread([this] { listen(); });
   }
@@ -38,7 +39,7 @@ class UserWords::Listener {
   void end_of_input();
 
   Controller& controller_;
-  std::atomic<bool>& stop_;
+  StopRequests& stop_;
   bool step_by_step_;
   bool paused_ = false;
   std::string line_;
@@ -47,7 +48,7 @@ class UserWords::Listener {
 };
 
 void UserWords::Listener::listen() {
-  while (!over_.load() && !stop_.load()) {
+  while (!over_.load()) {
     pollfd input{STDIN_FILENO, POLLIN, 0};
     if (::poll(&input, 1, kPoll_ms) <= 0) continue;
     std::array<char, 256> typed{};
@@ -86,12 +87,13 @@ void UserWords::Listener::obey(const std::string& line) {
 
 void UserWords::Listener::end_of_input() {
   if (!step_by_step_ && !paused_) return;
-  std::fprintf(stderr, "tenon-exec: standard input has ended, and %s has nobody to ask: stopping\n",
+  std::fprintf(stderr,
+               "tenon-exec: standard input has ended, and %s has nobody to ask: ending the plan\n",
                step_by_step_ ? "--step" : "a paused move");
-  stop_.store(true);
+  stop_.by_circumstance.store(true, std::memory_order_relaxed);
 }
 
-UserWords::UserWords(Controller& controller, std::atomic<bool>& stop, bool step_by_step)
+UserWords::UserWords(Controller& controller, StopRequests& stop, bool step_by_step)
     : listener_(std::make_unique<Listener>(controller, stop, step_by_step)) {}
 
 UserWords::~UserWords() = default;

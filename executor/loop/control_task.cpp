@@ -69,7 +69,7 @@ ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& 
     take(*ending);
   }
   follow_brakes(feedback);
-  if (std::exchange(stop_requested_, false)) take(Ending{.reason = EndReason::kStopRequested});
+  take_requests();
   take(act(feedback));
   const bool about_to_enable = state_ == State::kWaiting || state_ == State::kCatching;
   if (about_to_enable && feedback.state != ArmState::kEnabled)
@@ -85,6 +85,16 @@ ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& 
   power_asked_ = power_asked_ || command.request == ArmRequest::kEnabled;
   write_record(now_ns, feedback, command);
   return command;
+}
+
+// An arm that is held falls where nobody has something under it: that is for the user to say.
+void ControlTask::take_requests() {
+  const bool holding = state_ == State::kCatching && cell_.hold_if_brake_fails;
+  const bool ended = std::exchange(end_requested_, false);
+  if (ended && holding) ++stops_unheeded_;
+  if (std::exchange(stop_requested_, false) || (ended && !holding)) {
+    take(Ending{.reason = EndReason::kStopRequested});
+  }
 }
 
 void ControlTask::report_overruns(std::uint64_t late_cycles) noexcept {
@@ -213,6 +223,7 @@ void ControlTask::write_record(std::int64_t now_ns, const ArmFeedback& feedback,
   r.arm_fault = ending_.arm_fault;
   r.slip = ending_.slip;
   r.hold = ending_.hold;
+  r.stops_unheeded = stops_unheeded_;
   r.brakes_unwatched = ending_.brakes_unwatched;
   r.wrench_fresh = supervision_.wrench_usable();
   r.pose = data_of(supervision_.tool());

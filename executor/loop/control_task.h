@@ -63,6 +63,9 @@ class ControlTask {
   /// Ends the run: on the user's request, because the loop is too late, or the bus too bad. A
   /// request counts once: who holds an arm whose brake failed goes on until the next one.
   void request_stop() noexcept { stop_requested_ = true; }
+  /// The same by nobody's word, such as an end of input: ends the work, and lets go of no arm that
+  /// is held; there it is only counted.
+  void request_end() noexcept { end_requested_ = true; }
   void report_overruns(std::uint64_t late_cycles) noexcept;
   void report_poor_feedback(std::uint64_t incomplete_cycles) noexcept;
 
@@ -142,6 +145,7 @@ class ControlTask {
 
  private:
   void take(const Turn& turn);
+  void take_requests();
   [[nodiscard]] std::optional<Event> event_of(const Turn& turn);
   [[nodiscard]] Turn enter_state(State state);
   [[nodiscard]] Event remember(const Ending& ending);
@@ -186,6 +190,8 @@ class ControlTask {
   std::int64_t motion_ns_ = 0;
   std::uint64_t sequence_ = 0;
   bool stop_requested_ = false;
+  bool end_requested_ = false;
+  std::uint32_t stops_unheeded_ = 0;
   Ending ending_;
 
   JointVector tare_low_{};

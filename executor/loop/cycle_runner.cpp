@@ -70,12 +70,12 @@ void CycleRunner::publish(std::int64_t wakeup_late_ns, std::int64_t compute_ns) 
   if (sink_ != nullptr) sink_->record(record);
 }
 
-void CycleRunner::run(std::atomic<bool>& stop) noexcept {
+void CycleRunner::run(StopRequests& stop) noexcept {
   MonotonicClock clock;
   run(stop, clock);
 }
 
-void CycleRunner::run(std::atomic<bool>& stop, Clock& clock) noexcept {
+void CycleRunner::run(StopRequests& stop, Clock& clock) noexcept {
   const auto deadline_ns =
       static_cast<std::int64_t>(parameters_.feedback_deadline * static_cast<double>(cycle_ns_));
   const auto late_sync_ns = static_cast<std::int64_t>(kLateSync * static_cast<double>(cycle_ns_));
@@ -84,7 +84,7 @@ void CycleRunner::run(std::atomic<bool>& stop, Clock& clock) noexcept {
   while (!task_.finished()) {
     wait_until(due_ns, clock);
     const std::int64_t awake_ns = clock.now_ns();
-    if (stop.exchange(false, std::memory_order_relaxed)) task_.request_stop();
+    pass_on(stop);
     if (awake_ns - last_awake_ns > late_sync_ns) task_.distrust_samples();
     last_awake_ns = awake_ns;
 
@@ -106,6 +106,11 @@ void CycleRunner::run(std::atomic<bool>& stop, Clock& clock) noexcept {
     // After the last cycle none is late: every record and the result tell of the same ones.
     if (!task_.finished()) due_ns = next_due(due_ns, clock.now_ns());
   }
+}
+
+void CycleRunner::pass_on(StopRequests& stop) noexcept {
+  if (stop.by_user.exchange(false, std::memory_order_relaxed)) task_.request_stop();
+  if (stop.by_circumstance.exchange(false, std::memory_order_relaxed)) task_.request_end();
 }
 
 // On the bus, for what may come; the end on the clock, which is the more exact.

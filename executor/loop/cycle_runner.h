@@ -4,12 +4,12 @@
 // clock, begin() and finish() without one, for virtual time. Real-time after construction, one
 // thread; refers to arm, task and sink, which must outlive it.
 
-#include <atomic>
 #include <cstdint>
 
 #include "executor/faults/fault_bounds.h"
 #include "executor/loop/control_task.h"
 #include "executor/loop/leaky_bucket.h"
+#include "executor/loop/stop_requests.h"
 #include "executor/record/black_box.h"
 #include "executor/record/cycle_sink.h"
 #include "executor/record/histogram.h"
@@ -53,14 +53,15 @@ class CycleRunner {
   }
 
   /// Runs to the end on the system's clock. @param stop set by anyone to end the run in good order
-  void run(std::atomic<bool>& stop) noexcept;
+  void run(StopRequests& stop) noexcept;
   /// The same on another clock; the arm's wait() must go by it, too.
-  void run(std::atomic<bool>& stop, Clock& clock) noexcept;
+  void run(StopRequests& stop, Clock& clock) noexcept;
 
   [[nodiscard]] const Statistics& statistics() const noexcept { return statistics_; }
   [[nodiscard]] const BlackBox& black_box() const noexcept { return black_box_; }
 
  private:
+  void pass_on(StopRequests& stop) noexcept;
   void count_answers(bool complete) noexcept;
   void decide(std::int64_t now_ns) noexcept;
   void wait_until(std::int64_t due_ns, Clock& clock) noexcept;

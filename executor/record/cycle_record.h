@@ -48,6 +48,7 @@ struct CycleRecord {
   std::uint8_t end_reason = 0;
   ArmFault arm_fault;  ///< of the Ending, as the next two
   Hold hold = Hold::kNone;
+  std::uint32_t stops_unheeded = 0;  ///< so far: asked by nobody's word to let go of a held arm
   BrakeSlip slip;
   std::uint32_t brakes_unwatched = 0;  ///< bit i: of joint i
 

@@ -14,19 +14,25 @@
 namespace tenon {
 namespace {
 
-std::atomic<std::atomic<bool>*> asked{nullptr};
+std::atomic<std::atomic<bool>*> asked_by_user{nullptr};
+std::atomic<std::atomic<bool>*> asked_by_circumstance{nullptr};
 static_assert(std::atomic<bool>::is_always_lock_free);
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
-void ask_to_stop(int /*signal*/) {
-  std::atomic<bool>* stop = asked.load(std::memory_order_relaxed);
+void ask_to_stop(int signal) {
+  const bool by_user = signal == SIGINT || signal == SIGTERM;
+  std::atomic<bool>* stop =
+      (by_user ? asked_by_user : asked_by_circumstance).load(std::memory_order_relaxed);
   if (stop != nullptr) stop->store(true, std::memory_order_relaxed);
 }
 
 }  // namespace
 
-void stop_on_signals(std::atomic<bool>& stop) {
-  asked.store(&stop, std::memory_order_relaxed);
+void stop_on_signals(std::atomic<bool>& stop) { stop_on_signals(stop, stop); }
+
+void stop_on_signals(std::atomic<bool>& by_user, std::atomic<bool>& by_circumstance) {
+  asked_by_user.store(&by_user, std::memory_order_relaxed);
+  asked_by_circumstance.store(&by_circumstance, std::memory_order_relaxed);
   struct sigaction action {};
   action.sa_handler = &ask_to_stop;  // no SA_RESTART: a connection that is not made ends too
   const auto stop_on = [&action](int signal) {

@@ -14,6 +14,9 @@ namespace tenon {
 /// that nobody sends but by mistake or from a batch system (SIGUSR1, SIGALRM, SIGXCPU, ...). One
 /// that is ignored stays so (nohup). SIGKILL and errors of the program itself end it as ever.
 void stop_on_signals(std::atomic<bool>& stop);
+/// The same where it matters who means it. @param by_user set by SIGINT and SIGTERM
+/// @param by_circumstance by all others: a terminal that is gone has asked for nothing
+void stop_on_signals(std::atomic<bool>& by_user, std::atomic<bool>& by_circumstance);
 
 /// A write beyond the limit of a file's size fails like one to a full disk, and ends nothing.
 void survive_full_disks();

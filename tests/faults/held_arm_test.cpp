@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -96,6 +97,20 @@ TEST_F(HeldArm, TheStopThatEndedTheRunDoesNotEndTheHolding) {
   to_catching();
   is_held(2000);
   EXPECT_EQ(run->result().ending.reason, EndReason::kBrakeFailed) << run->result().reason;
+  stop_ends_it();
+}
+
+// An end of input, a lost terminal: neither has anything under the arm.
+TEST_F(HeldArm, NobodysWordEndsTheRunAndNotTheHolding) {
+  start({});
+  cycles(1500);
+  run->controller().request_end();
+  to_catching();
+  for (std::uint32_t asked = 1; asked < 4; ++asked) {
+    run->controller().request_end();
+    is_held(500);
+    EXPECT_EQ(run->controller().record().stops_unheeded, asked);
+  }
   stop_ends_it();
 }
 

@@ -1,6 +1,5 @@
 #include "tests/support/whole_run.h"
 
-#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -90,11 +89,11 @@ WholeRun::WholeRun(const Cell& cell, const Task& task, const Plan& plan, const O
 
 WholeRun::Result WholeRun::run_on_clock(sim::VirtualClock::Lateness late) {
   master_->wait_by(*time_);
-  std::atomic<bool> stop = false;
+  executor::StopRequests stop;
   const std::int64_t end_ns =
       now_ns() + kRunMax_cycles * std::int64_t{1000} * cell_description_.robot.cycle_us;
   sim::VirtualClock clock(*time_, [&](std::int64_t due_ns) {
-    if (due_ns > end_ns) stop = true;
+    if (due_ns > end_ns) stop.by_user = true;
     note_step();
     return late(due_ns);
   });

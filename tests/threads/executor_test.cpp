@@ -70,13 +70,13 @@ class TwoThreads {
 
   /// To the end. @param stop_after running cycles that have been recorded; 0: no stop
   RunResult run(int stop_after) {
-    std::atomic<bool> stop{false};
+    StopRequests stop;
     recorder_->start();
     std::thread loop([&] { runner_.run(stop); });
     if (stop_after > 0) {
       while (progress_.running() < stop_after)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      stop = true;
+      stop.by_user = true;
     }
     loop.join();
     recorder_->stop();
