@@ -31,6 +31,11 @@ namespace {
 
 StopRequests stop_asked;
 
+void obey_signals() {
+  stop_on_signals(stop_asked.by_user, stop_asked.by_circumstance);
+  never_be_suspended();
+}
+
 int run_plan(const Options& options, const Cell& cell, const DryRun& dry_run) {
   Controller::Parameters parameters;
   parameters.go_to_start = options.go_to_start;
@@ -87,7 +92,7 @@ int execute(const Options& options) {
   hw::check_bus_load(cell.robot);
   hw::check_response_times(cell.robot);
   if (options.identifies()) {
-    stop_on_signals(stop_asked.by_user, stop_asked.by_circumstance);
+    obey_signals();
     return identify(options, cell);
   }
   DryRun run = dry_run(plan, cell);
@@ -99,7 +104,7 @@ int execute(const Options& options) {
                      "' cannot execute this plan: " + run.refusals.front());
   }
   if (options.dry_run) return 0;
-  stop_on_signals(stop_asked.by_user, stop_asked.by_circumstance);
+  obey_signals();
   print_opening(plan, cell, run);
   return run_plan(options, cell, run);
 }

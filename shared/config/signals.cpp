@@ -26,6 +26,15 @@ void ask_to_stop(int signal) {
   if (stop != nullptr) stop->store(true, std::memory_order_relaxed);
 }
 
+void stop_on(int signal) {
+  struct sigaction action {};
+  action.sa_handler = &ask_to_stop;  // no SA_RESTART: a connection that is not made ends too
+  struct sigaction before {};
+  (void)::sigaction(signal, nullptr, &before);
+  const bool wanted = signal == SIGINT || signal == SIGTERM || signal == SIGQUIT;
+  if (wanted || before.sa_handler != SIG_IGN) (void)::sigaction(signal, &action, nullptr);
+}
+
 }  // namespace
 
 void stop_on_signals(std::atomic<bool>& stop) { stop_on_signals(stop, stop); }
@@ -33,19 +42,17 @@ void stop_on_signals(std::atomic<bool>& stop) { stop_on_signals(stop, stop); }
 void stop_on_signals(std::atomic<bool>& by_user, std::atomic<bool>& by_circumstance) {
   asked_by_user.store(&by_user, std::memory_order_relaxed);
   asked_by_circumstance.store(&by_circumstance, std::memory_order_relaxed);
-  struct sigaction action {};
-  action.sa_handler = &ask_to_stop;  // no SA_RESTART: a connection that is not made ends too
-  const auto stop_on = [&action](int signal) {
-    struct sigaction before {};
-    (void)::sigaction(signal, nullptr, &before);
-    const bool wanted = signal == SIGINT || signal == SIGTERM || signal == SIGQUIT;
-    if (wanted || before.sa_handler != SIG_IGN) (void)::sigaction(signal, &action, nullptr);
-  };
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM,
                            SIGPROF, SIGPOLL, SIGPWR, SIGSTKFLT, SIGXCPU}) {
     stop_on(signal);
   }
   for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) stop_on(signal);
+}
+
+void never_be_suspended() {
+  stop_on(SIGTSTP);
+  (void)std::signal(SIGTTIN, SIG_IGN);
+  (void)std::signal(SIGTTOU, SIG_IGN);
 }
 
 void survive_full_disks() { (void)std::signal(SIGXFSZ, SIG_IGN); }

@@ -18,6 +18,12 @@ void stop_on_signals(std::atomic<bool>& stop);
 /// @param by_circumstance by all others: a terminal that is gone has asked for nothing
 void stop_on_signals(std::atomic<bool>& by_user, std::atomic<bool>& by_circumstance);
 
+/// After stop_on_signals(), for a program that something in motion waits for: no shell's job
+/// control holds it up. SIGTSTP (Ctrl-Z) sets `by_circumstance`, one that is ignored stays so;
+/// SIGTTIN and SIGTTOU are ignored: a read from a terminal in whose background it is fails, a write
+/// goes through.
+void never_be_suspended();
+
 /// A write beyond the limit of a file's size fails like one to a full disk, and ends nothing.
 void survive_full_disks();
 

@@ -95,7 +95,7 @@ std::vector<std::string> borne(HeldRun& run) {
   run.hang_up();
   if (run.goes_on(1)) all.emplace_back("end of input");
   int times = 1;
-  for (const int signal : {SIGHUP, SIGQUIT, SIGUSR1, SIGALRM}) {
+  for (const int signal : {SIGHUP, SIGQUIT, SIGTSTP, SIGUSR1, SIGALRM}) {
     run.exec().send(signal);
     if (run.goes_on(++times)) all.emplace_back(::sigabbrev_np(signal));
   }
@@ -118,7 +118,7 @@ TEST(HeldProcess, NeitherAnEndOfInputNorAStraySignalLetsTheArmGo) {
     } while (true);
     all = borne(*run);
   } while (run->said("is not any more") > 0 && ++tries < kTries);
-  const std::vector<std::string> expected{"end of input", "HUP", "QUIT", "USR1", "ALRM"};
+  const std::vector<std::string> expected{"end of input", "HUP", "QUIT", "TSTP", "USR1", "ALRM"};
   EXPECT_EQ(all, expected) << run->exec().err();
   EXPECT_EQ(run->said("standard input has ended, and --step has nobody to ask"), 1);
   EXPECT_EQ(run->result().at("hold"), "held");

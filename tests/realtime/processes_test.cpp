@@ -216,7 +216,7 @@ TEST_F(ProcessesTest, ARunReachesTheGoalAndItsLogsCanBeReadAndPlayed) {
 class StopSignal : public ProcessesTest, public ::testing::WithParamInterface<int> {};
 
 INSTANTIATE_TEST_SUITE_P(Each, StopSignal,
-                         ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1));
+                         ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGTSTP));
 
 TEST_P(StopSignal, InMidMotionStopsTheArmAndSaysSo) {
   ASSERT_NE(begin_moving(), nullptr) << processes->exec().err();
