@@ -36,7 +36,7 @@ std::optional<CanFrame> SdoClient::process(const CanFrame& frame, std::int64_t n
   if (state_ != State::kBusy || !concerns(frame)) {
     return std::nullopt;
   }
-  deadline_ns_ = now_ns + timeout_ns_;
+  deadline_ns_ = std::min(now_ns + timeout_ns_, end_ns_);
   const unsigned command = frame.data[0];
   if (command == 0x80) {
     abort_code_ = load_le<std::uint32_t>(std::span(frame.data).subspan(4));
@@ -86,6 +86,7 @@ void SdoClient::begin(const SdoAddress& address, Phase phase, std::int64_t now_n
   phase_ = phase;
   state_ = State::kBusy;
   deadline_ns_ = now_ns + timeout_ns_;
+  end_ns_ = now_ns + kTimeoutsMost * timeout_ns_;
   abort_code_ = 0;
   toggle_ = false;
   sent_ = 0;
@@ -121,12 +122,16 @@ std::optional<CanFrame> SdoClient::on_upload_segment(const CanFrame& frame) {
     return abort(tenon::canopen::kAbortToggle);
   }
   const std::size_t count = 7 - ((command >> 1) & 7);
+  const bool last = (command & 0x01) != 0;
+  if (count == 0 && !last) {
+    return abort(tenon::canopen::kAbortCommand);
+  }
   if (size_ + count > kMaxBytes) {
     return abort(kAbortOutOfMemory);
   }
   std::copy_n(frame.data.begin() + 1, count, buffer_.begin() + static_cast<std::ptrdiff_t>(size_));
   size_ += count;
-  if ((command & 0x01) != 0) {
+  if (last) {
     state_ = State::kDone;
     return std::nullopt;
   }

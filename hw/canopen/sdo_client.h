@@ -6,6 +6,9 @@
 //   kIdle --start--> kBusy --last answer--> kDone
 //                      |---- abort -------> kAborted   (from the node, or by this side: abort_code)
 //                      +---- silence -----> kTimedOut
+//
+// However a node answers, a transfer has an end: an empty segment that is not the last is an abort
+// of this side, and one that goes on for kTimeoutsMost timeouts counts as silence.
 
 #include <array>
 #include <cstddef>
@@ -21,9 +24,10 @@ namespace tenon::hw::canopen {
 class SdoClient {
  public:
   static constexpr std::size_t kMaxBytes = 1024;
+  static constexpr std::int64_t kTimeoutsMost = 10;  ///< for a whole transfer
   enum class State : std::uint8_t { kIdle, kBusy, kDone, kAborted, kTimedOut };
 
-  /// @param timeout_ns for each answer
+  /// @param timeout_ns for each answer; see kTimeoutsMost
   explicit SdoClient(std::int64_t timeout_ns = 500'000'000) : timeout_ns_(timeout_ns) {}
 
   /// Reads an object. Replaces a transfer that is still busy.
@@ -61,7 +65,8 @@ class SdoClient {
   State state_ = State::kIdle;
   Phase phase_ = Phase::kUpload;
   SdoAddress address_;
-  std::int64_t deadline_ns_ = 0;
+  std::int64_t deadline_ns_ = 0;  ///< of the next answer
+  std::int64_t end_ns_ = 0;       ///< of the transfer
   std::uint32_t abort_code_ = 0;
   bool toggle_ = false;
   std::array<std::uint8_t, kMaxBytes> buffer_{};

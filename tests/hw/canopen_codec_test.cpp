@@ -194,6 +194,38 @@ TEST(SdoClient, SilenceEndsInTimeoutAndAnAbort) {
   EXPECT_EQ(client.state(), State::kTimedOut);
 }
 
+// It would renew the time for an answer for ever.
+TEST(SdoClient, AnEmptySegmentThatIsNotTheLastIsAborted) {
+  SdoClient client;
+  (void)client.start_upload({4, 0x1018, 1}, 0);
+  (void)client.process(golden("584#4118100104000000"), 0);
+  EXPECT_EQ(client.process(golden("584#0E00000000000000"), 0), golden("604#8018100101000405"));
+  EXPECT_EQ(client.state(), State::kAborted);
+  EXPECT_EQ(client.abort_code(), 0x05040001u);
+
+  // The last one may be: an object without bytes.
+  (void)client.start_upload({4, 0x1008, 0}, 0);
+  (void)client.process(golden("584#4108100000000000"), 0);
+  EXPECT_FALSE(client.process(golden("584#0F00000000000000"), 0));
+  EXPECT_EQ(client.state(), State::kDone);
+  EXPECT_EQ(client.data().size(), 0U);
+}
+
+//  request 0 -> answers of one byte each, every 999 ns, each in time -> 10000: silence
+TEST(SdoClient, ATransferThatTricklesEndsInTimeout) {
+  SdoClient client(1000);
+  (void)client.start_upload({4, 0x1008, 0}, 0);
+  (void)client.process(golden("584#4108100000040000"), 0);
+  std::int64_t now_ns = 0;
+  for (bool toggle = false; client.state() == State::kBusy && now_ns < 100'000; toggle = !toggle) {
+    now_ns += 999;
+    if (client.update(now_ns)) break;
+    (void)client.process(golden(toggle ? "584#1C41000000000000" : "584#0C41000000000000"), now_ns);
+  }
+  EXPECT_EQ(client.state(), State::kTimedOut);
+  EXPECT_EQ(now_ns, 10'989);  // the first look after the bound
+}
+
 TEST(SdoClient, UploadThatNeverEndsIsAborted) {
   SdoClient client;
   (void)client.start_upload({4, 0x1008, 0}, 0);
