@@ -71,6 +71,11 @@ void print_closing(const RunResult& result) {
   if (result.exit_code != 0) std::fprintf(stderr, "tenon-exec: %s\n", result.message.c_str());
 }
 
+void print_losses(const RunResult& result) {
+  const std::string losses = result.losses();
+  if (!losses.empty()) std::fprintf(stderr, "tenon-exec: lost: %s\n", losses.c_str());
+}
+
 void write_json(const std::string& file, const std::string& json) {
   if (file == "-") {
     std::fputs(json.c_str(), stdout);

@@ -50,6 +50,9 @@ void print_identification(const char* what, const Cell& cell);
 /// What came of a run; the message on standard error too, where it failed.
 void print_closing(const RunResult& result);
 
+/// What was lost of its output, on standard error; nothing where nothing was.
+void print_losses(const RunResult& result);
+
 /// To a file, or to standard output for "-"; nowhere where no name is given.
 /// @throws InputError where the file cannot be written
 void write_json(const std::string& file, const std::string& json);

@@ -127,7 +127,10 @@ void TaskRun::run() {
   real_time.join();
   recorder_->stop();
   if (can_log_) can_log_->drain();
-  if (failure) std::rethrow_exception(failure);
+  if (failure) {
+    tell_lost_records();
+    std::rethrow_exception(failure);
+  }
 }
 
 // Everything that lives on the real-time thread: real time, the drives' bring-up, the run. Asked to
@@ -167,6 +170,12 @@ std::vector<RecordReport> TaskRun::close_records() {
   return reports;
 }
 
+void TaskRun::tell_lost_records() {
+  RunResult none;
+  none.records = close_records();
+  print_losses(none);
+}
+
 void TaskRun::keep_black_box(RunResult& result) const {
   if (!result.ended_badly()) return;
   result.records.push_back(runner_.black_box().write_csv(options_.black_box));
@@ -191,8 +200,7 @@ int TaskRun::conclude(RunResult result) {
                  "before the next run\n",
                  axes == 1 ? "one axis" : (std::to_string(axes) + " axes").c_str());
   }
-  const std::string losses = result.losses();
-  if (!losses.empty()) std::fprintf(stderr, "tenon-exec: lost: %s\n", losses.c_str());
+  print_losses(result);
   return result.exit_status();
 }
 

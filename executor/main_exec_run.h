@@ -45,7 +45,8 @@ class TaskRun {
   /// Before run(); outlives it.
   void add(RecordConsumer& consumer) { recorder_->add(consumer); }
 
-  /// To the end of the task. @throws what the bring-up throws
+  /// To the end of the task. @throws what the bring-up throws; what the records lost is told first,
+  /// and conclude() has nothing more to tell
   void run();
 
   [[nodiscard]] const CycleRunner& runner() const { return runner_; }
@@ -61,6 +62,8 @@ class TaskRun {
   /// Both, where there are two.
   [[nodiscard]] CanBus& bus() const;
   [[nodiscard]] std::vector<RecordReport> close_records();
+  /// Of a run that never began.
+  void tell_lost_records();
   void keep_black_box(RunResult& result) const;
   [[nodiscard]] const Robot& robot() const { return task_.cell().robot; }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/bad_input.h"
 #include "tests/support/busy_machine.h"
 #include "tests/support/child_process.h"
 #include "tests/support/commands.h"
@@ -110,6 +111,25 @@ TEST(Records, ABlackBoxThatCannotBeWrittenTakesNothingWithIt) {
   EXPECT_EQ(result.at("records").back().at("name"), "black_box");
   EXPECT_GT(result["records"].back().at("lost"), 0);
   EXPECT_NE(run->last_line().find("--black-box "), std::string::npos) << run->last_line();
+}
+
+// What the bus said is then what somebody looks for.
+TEST(Records, ABringUpThatFailsTellsWhatItsLogLost) {
+  const ScratchFolder folder;
+  // The third of three drives: most of the bring-up has passed by then.
+  const std::string elsewhere =
+      cell_around(folder, "elsewhere.yaml",
+                  edited(folder, "robot.yaml", robot_file(), "    node: 3\n    mode: 8",
+                         "    node: 3\n    mode: 7"));
+  const SimProcess sim(folder.path(), "4", {}, elsewhere);
+  const Ended ended =
+      run(folder, {"prlimit", "--fsize=2000:2000", executable("tenon-exec"), "--cell",
+                   gantry_cell_file(), "--plan", put_box_plan(folder, "4"), "--can", sim.uri(),
+                   "--rt", "off", "--lcm-url", "none", "--can-log", folder.path() / "candump"});
+  EXPECT_EQ(ended.status, 2) << ended.err;
+  EXPECT_NE(ended.err.find("tenon-exec: lost: --can-log "), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("records lost (File too large)"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("node 3 (z)"), std::string::npos) << ended.err;
 }
 
 }  // namespace
