@@ -4,6 +4,7 @@
 
 #include "hw/arm/cob_ids.h"
 #include "hw/canopen/heartbeat.h"
+#include "hw/canopen/nmt.h"
 #include "hw/canopen/sync.h"
 #include "shared/base/bytes.h"
 #include "shared/base/time_units.h"
@@ -75,6 +76,13 @@ void ArmOutput::send_packed_setpoints() noexcept {
       supervision_.setpoint_refused(i);
       if (second != nullptr) supervision_.setpoint_refused(i + 1);
     }
+  }
+}
+
+void ArmOutput::send_starts() noexcept {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (!supervision_.take_missed_us(i)) continue;
+    send(canopen::nmt_frame(tenon::canopen::kNmtStart, joints_[i].node()));
   }
 }
 

@@ -31,6 +31,9 @@ class ArmOutput {
   /// @param follow `position` (m or rad), else where each joint is. A joint that has not been heard
   /// of is sent nothing: nothing is known that could be a safe target.
   void send_setpoints(ArmRequest request, bool follow, const JointVector& position) noexcept;
+  /// To drives that wait in pre-operational since they have missed this master: they hear stops and
+  /// say where and in which state they are again.
+  void send_starts() noexcept;
   /// All drives at once, where they have an RPDO for it.
   void send_stop() noexcept;
   /// Where it is due.

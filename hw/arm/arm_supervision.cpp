@@ -49,6 +49,8 @@ void ArmSupervision::begin(std::int64_t now_ns) noexcept {
   watch_.restart(now_ns);
   missing_cycles_.fill(0);
   warned_.fill(0);
+  departures_.fill({});
+  other_master_ = false;
   wrong_length_.fill(0);
   wrench_.reset();
   silent_cycles_ = refused_cycles_ = 0;
@@ -69,6 +71,7 @@ void ArmSupervision::enter_state(ArmState state, std::int64_t now_ns) noexcept {
 }
 
 void ArmSupervision::raise(const ArmFault& fault) noexcept {
+  other_master_ = other_master_ || fault.kind == ArmFaultKind::kOtherMaster;
   const bool of_sensor =
       fault.kind == ArmFaultKind::kSensorStale || (sensor_node_ != 0 && fault.node == sensor_node_);
   if (of_sensor && !sensor_relied_on_) return;
@@ -122,8 +125,30 @@ void ArmSupervision::take_heartbeat(const canopen::Heartbeat& heartbeat,
   if (!watch_.process(heartbeat, now_ns)) {
     ++counters_.unexpected_frames;
   } else if (heartbeat.state != tenon::canopen::kStateOperational) {
+    note_left(heartbeat);
     raise({ArmFaultKind::kUnexpectedReset, heartbeat.node, 0, heartbeat.state});
   }
+}
+
+std::size_t ArmSupervision::joint_of(std::uint8_t node) const noexcept {
+  std::size_t at = 0;
+  while (at < joints_.size() && joints_[at].node() != node) ++at;
+  return at;
+}
+
+void ArmSupervision::note_left(const canopen::Heartbeat& heartbeat) noexcept {
+  const std::size_t joint = joint_of(heartbeat.node);
+  if (joint == joints_.size()) return;
+  Departure& departure = departures_[joint];
+  departure.reset = departure.reset || heartbeat.state == tenon::canopen::kStateBootUp;
+  departure.waits = heartbeat.state == tenon::canopen::kStatePreOperational;
+}
+
+bool ArmSupervision::take_missed_us(std::size_t joint) noexcept {
+  Departure& departure = departures_[joint];
+  const bool waits = departure.waits;
+  departure.waits = false;
+  return waits && departure.missed_us && !departure.reset && !other_master_;
 }
 
 void ArmSupervision::take_emergency(const canopen::Emergency& emergency) noexcept {
@@ -137,13 +162,12 @@ void ArmSupervision::take_emergency(const canopen::Emergency& emergency) noexcep
     raise({ArmFaultKind::kSensorInvalid, sensor_node_, error_code, emergency.code});
     return;
   }
-  const auto ours = std::find_if(joints_.begin(), joints_.end(), [&](const JointChannel& joint) {
-    return joint.node() == emergency.node;
-  });
-  if (ours == joints_.end()) {
+  const std::size_t joint = joint_of(emergency.node);
+  if (joint == joints_.size()) {
     return;
   }
-  const auto joint = static_cast<std::size_t>(ours - joints_.begin());
+  const bool missed_us = emergency.code == tenon::canopen::kEmergencyHeartbeat;
+  departures_[joint].missed_us = departures_[joint].missed_us || missed_us;
   // The statusword may have told first; the error code says more.
   const bool same_fault =
       fault_.kind == ArmFaultKind::kDriveFault && fault_.node == emergency.node &&
@@ -169,9 +193,7 @@ void ArmSupervision::forget_warning(const canopen::Emergency& emergency) noexcep
 }
 
 void ArmSupervision::take_wrong_length(std::uint8_t node, std::uint8_t data_bytes) noexcept {
-  std::size_t at = 0;
-  while (at < joints_.size() && joints_[at].node() != node) ++at;
-  wrong_length_[at] = static_cast<std::uint8_t>(data_bytes + 1);
+  wrong_length_[joint_of(node)] = static_cast<std::uint8_t>(data_bytes + 1);
 }
 
 // --- once a cycle --------------------------------------------------------------------------------

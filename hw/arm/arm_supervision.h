@@ -72,6 +72,9 @@ class ArmSupervision {
   void force_exceeded(double force_N) noexcept;
   void take_heartbeat(const canopen::Heartbeat& heartbeat, std::int64_t now_ns) noexcept;
   void take_emergency(const canopen::Emergency& emergency) noexcept;
+  /// This joint's drive waits in pre-operational since it has missed this master, and has lost
+  /// nothing else; once for each of its heartbeats that say so.
+  [[nodiscard]] bool take_missed_us(std::size_t joint) noexcept;
   /// Process data of another length than their mapping's. @param data_bytes that came
   void take_wrong_length(std::uint8_t node, std::uint8_t data_bytes) noexcept;
 
@@ -101,6 +104,8 @@ class ArmSupervision {
   void check_silence(const ArmFeedback& feedback) noexcept;
   void check_unsent(bool dropped) noexcept;
   void enable(std::int64_t now_ns) noexcept;
+  void note_left(const canopen::Heartbeat& heartbeat) noexcept;
+  [[nodiscard]] std::size_t joint_of(std::uint8_t node) const noexcept;
   void forget_warning(const canopen::Emergency& emergency) noexcept;
   void raise_of_drive(ArmFaultKind kind, std::size_t joint) noexcept;
   void raise_missing(ArmFaultKind kind, std::uint8_t node, std::uint32_t cycles,
@@ -125,6 +130,14 @@ class ArmSupervision {
   canopen::HeartbeatWatch watch_;
   std::array<std::uint32_t, kMaxJoints> missing_cycles_{};  ///< in a row
   std::array<std::uint16_t, kMaxJoints> warned_{};          ///< last error code that only warned
+  /// What a drive has said of why it has left operational.
+  struct Departure {
+    bool missed_us = false;  ///< it has missed our heartbeat
+    bool reset = false;      ///< what it was told in bring-up is gone
+    bool waits = false;      ///< in pre-operational, by its last heartbeat
+  };
+  std::array<Departure, kMaxJoints> departures_{};  ///< since begin()
+  bool other_master_ = false;                       ///< has been heard since begin()
   WrenchStaleness wrench_;
   std::uint32_t silent_cycles_ = 0;   ///< in a row without any answer
   std::uint32_t refused_cycles_ = 0;  ///< in a row with a refused frame

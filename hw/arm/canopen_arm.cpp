@@ -140,6 +140,9 @@ void CanopenArm::command(std::int64_t now_ns, ArmRequest request,
     supervision_.check_setpoints(position);
   }
   supervision_.advance(now_ns, request);
+  if (state() == ArmState::kFault) {
+    output_.send_starts();
+  }
   const bool follow = was_enabled && state() == ArmState::kEnabled;
   output_.send_setpoints(supervision_.granted(request), follow, position);
   output_.send_heartbeat(now_ns);

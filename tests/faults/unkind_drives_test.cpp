@@ -93,6 +93,18 @@ TEST_P(ByTheBook, ADeadExecutorLeavesNoPowerAndDropsNothing) {
   }
 }
 
+// Suspended and let go on: the drives have stopped by themselves, and have left operational.
+TEST_P(ByTheBook, AnExecutorThatStoodStillSeesTheDrivesOffAndTheBrakesHold) {
+  Stop stop(GetParam());
+  stop.until_s(2.5);
+  stop.run.leave_alone(3.0);
+  stop.to_the_end();
+  EXPECT_EQ(stop.ending().reason, EndReason::kArmFault) << stop.run.result().reason;
+  EXPECT_TRUE(stop.ending().disable_confirmed) << stop.run.result().reason;
+  EXPECT_EQ(stop.ending().brakes_unwatched, 0U) << stop.run.result().reason;
+  EXPECT_EQ(stop.rest.complaints(), "");
+}
+
 INSTANTIATE_TEST_SUITE_P(Cells, ByTheBook, ::testing::Values("gantry3", "csp6"));
 
 TEST(UnkindDrives, OneThatKeepsPowerHoldsItsAxisAndIsAloneInThat) {

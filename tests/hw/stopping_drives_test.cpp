@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <set>
 
 #include "hw/arm/braking_watch.h"
@@ -74,6 +75,48 @@ TEST(StoppingDrives, InAFaultTheDrivesOwnWordsSayThatTheyAreOff) {
   for (int i = 0; i < 20; ++i) gantry.cycle(ArmRequest::kDisabled);
   EXPECT_EQ(gantry.arm.state(), ArmState::kFault);
   EXPECT_EQ(gantry.feedback.joints_off, 0b111U);
+}
+
+// It has lost nothing but its master, says so, and waits in pre-operational.
+void miss_the_master(ScriptedNode& node, std::uint32_t emergency_id) {
+  node.send(emergency_id, {0x30, 0x81, 0x11, 0, 0, 0, 0, 0});
+  node.nmt_state = 0x7F;
+  node.statusword = 0x0250;
+}
+
+TEST(StoppingDrives, OneThatHasMissedTheMasterIsStartedAgainAndSaysThatItIsOff) {
+  GantryOnBus gantry;
+  ASSERT_TRUE(gantry.prepare_and_enable());
+  miss_the_master(*gantry.nodes[0], 0x081);
+  gantry.cycle(ArmRequest::kEnabled);
+  EXPECT_EQ(gantry.arm.state(), ArmState::kFault);
+  for (int i = 0; i < 100; ++i) gantry.cycle(ArmRequest::kDisabled);
+  EXPECT_EQ(gantry.nodes[0]->nmt_state, 0x05);
+  EXPECT_EQ(gantry.feedback.joints_off, 0b111U);
+}
+
+// After a reset its process data are not what they were; why the third waits, nobody knows.
+TEST(StoppingDrives, OneThatWasResetOrWaitsForAnotherReasonIsLeftAlone) {
+  GantryOnBus gantry;
+  ASSERT_TRUE(gantry.prepare_and_enable());
+  miss_the_master(*gantry.nodes[1], 0x082);
+  gantry.nodes[1]->reboot();
+  gantry.nodes[1]->objects[0x101700].value = 100;  // it goes on to say where it is
+  gantry.nodes[2]->nmt_state = 0x7F;
+  for (int i = 0; i < 200; ++i) gantry.cycle(ArmRequest::kDisabled);
+  EXPECT_EQ(gantry.nodes[1]->nmt_state, 0x7F);
+  EXPECT_EQ(gantry.nodes[2]->nmt_state, 0x7F);
+}
+
+TEST(StoppingDrives, OneThatAnotherMasterMayHaveIsLeftAlone) {
+  GantryOnBus gantry;
+  ASSERT_TRUE(gantry.prepare_and_enable());
+  gantry.nodes[1]->send(0x000, {0x80, 0x7E});
+  gantry.cycle(ArmRequest::kDisabled);
+  EXPECT_EQ(gantry.arm.fault().kind, ArmFaultKind::kOtherMaster);
+  miss_the_master(*gantry.nodes[0], 0x081);
+  for (int i = 0; i < 100; ++i) gantry.cycle(ArmRequest::kDisabled);
+  EXPECT_EQ(gantry.nodes[0]->nmt_state, 0x7F);
 }
 
 // 0.5 m/s at 1e6 counts a metre and 2 ms are 1000 counts a cycle.

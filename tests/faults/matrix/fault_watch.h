@@ -117,7 +117,7 @@ class FaultWatch final : public executor::CycleSink {
     asked_on_ = r.request == ArmRequest::kEnabled;
   }
   void look_at_the_truth() {
-    if (left_ && pressed_) return;
+    if ((left_ || named_) && pressed_) return;
     const sim::Truth truth = truth_();
     // What a drive shows that is neither being enabled nor enabled.
     const bool left =
@@ -125,7 +125,8 @@ class FaultWatch final : public executor::CycleSink {
           return drive.state != "operation enabled" && drive.state != "switched on" &&
                  drive.state != "ready to switch on" && drive.state != "on" && drive.state != "off";
         });
-    if (left && !left_) left_ = cycles_;
+    // Once the run has its name, a drive leaves because it is told to.
+    if (left && !left_ && !named_) left_ = cycles_;
     if (truth.contact_force_N_max > force_fault_N_ && !pressed_) pressed_ = cycles_;
   }
   [[nodiscard]] bool behind(const executor::CycleRecord& r) const {
