@@ -265,13 +265,22 @@ void ArmSupervision::check_feedback(const ArmFeedback& feedback) noexcept {
                     wrong_length_[i]);
     }
   }
-  wrench_.update(feedback.wrench_fresh);
+  check_wrench(feedback);
+}
+
+// A SYNC that nobody answered may never have left.
+void ArmSupervision::check_wrench(const ArmFeedback& feedback) noexcept {
+  const bool answered = feedback.joints_fresh != 0 || feedback.wrench_fresh;
+  wrench_.update(feedback, answered && !refused_);
   if (feedback.wrench_fresh) wrong_length_[joints_.size()] = 0;
   counters_.wrenches_missing += wrench_.missing() ? 1 : 0;
-  if (wrench_.stale()) {
-    raise_missing(ArmFaultKind::kSensorStale, sensor_node_, wrench_.cycles(),
-                  wrong_length_[joints_.size()]);
+  if (!wrench_.stale()) return;
+  if (const std::uint32_t behind = wrench_.samples_behind()) {
+    raise({ArmFaultKind::kSensorStale, sensor_node_, object_of(tenon::canopen::kSampleCounter),
+           behind});
   }
+  raise_missing(ArmFaultKind::kSensorStale, sensor_node_, wrench_.cycles(),
+                wrong_length_[joints_.size()]);
 }
 
 void ArmSupervision::advance(std::int64_t now_ns, ArmRequest wanted) noexcept {

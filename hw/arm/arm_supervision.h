@@ -102,6 +102,7 @@ class ArmSupervision {
   void enter_state(ArmState state, std::int64_t now_ns) noexcept;
   void check_drives(ArmRequest request) noexcept;
   void check_silence(const ArmFeedback& feedback) noexcept;
+  void check_wrench(const ArmFeedback& feedback) noexcept;
   void check_unsent(bool dropped) noexcept;
   void enable(std::int64_t now_ns) noexcept;
   void note_left(const canopen::Heartbeat& heartbeat) noexcept;

@@ -230,6 +230,22 @@ std::string sensor_stale(const ArmFault& fault, const Robot& robot) {
               : format("in %d cycles of %u us", robot.sensor.cycles_per_sample, robot.cycle_us));
 }
 
+std::string samples_late(const ArmFault& fault, const Robot& robot) {
+  const int samples = static_cast<int>(fault.code);
+  return format(
+      "its samples are %d SYNCs old by their counter (2001h), and have been so, or missing, for "
+      "more than %d "
+      "samples; check what else is on its bus, the adapter, and whether the sensor hears every "
+      "SYNC",
+      samples * robot.sensor.cycles_per_sample, WrenchStaleness::kMissingSamples);
+}
+
+std::string stale(const ArmFault& fault, const Robot& robot) {
+  if (fault.object == 0) return sensor_stale(fault, robot);
+  const bool late = fault.object >> 8 == tenon::canopen::kSampleCounter;
+  return late ? samples_late(fault, robot) : wrong_length(fault);
+}
+
 /// Of a frame that betrays another master (hw/arm/other_master.h).
 const char* master_frame_name(std::uint32_t cob_id, const Robot& robot) {
   if (cob_id == tenon::canopen::kNmt) return "NMT command";
@@ -266,8 +282,7 @@ std::string describe(const ArmFault& fault, const Robot& robot) {
       return node_name(fault, robot) +
              (fault.object != 0 ? wrong_length(fault) : feedback_missing(fault));
     case ArmFaultKind::kSensorStale:
-      return node_name(fault, robot) +
-             (fault.object != 0 ? wrong_length(fault) : sensor_stale(fault, robot));
+      return node_name(fault, robot) + stale(fault, robot);
     case ArmFaultKind::kSensorInvalid:
       return node_name(fault, robot) + sensor_invalid(fault, robot);
     case ArmFaultKind::kBusDown:

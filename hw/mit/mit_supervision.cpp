@@ -95,9 +95,14 @@ void MitSupervision::look_at_answers(const ArmFeedback& feedback, std::int64_t n
     if (missing_[i] <= kMissingCycles) continue;
     raise({ArmFaultKind::kFeedbackMissing, motors_[i].node(), 0, missing_[i]});
   }
-  wrench_.update(feedback.wrench_fresh);
+  wrench_.update(feedback, heard && !refused_);
   counters_.wrenches_missing += wrench_.missing() ? 1 : 0;
-  if (wrench_.stale()) raise({ArmFaultKind::kSensorStale, sensor_node_, 0, wrench_.cycles()});
+  if (!wrench_.stale()) return;
+  if (const std::uint32_t behind = wrench_.samples_behind()) {
+    raise({ArmFaultKind::kSensorStale, sensor_node_,
+           canopen::object_of(tenon::canopen::kSampleCounter), behind});
+  }
+  raise({ArmFaultKind::kSensorStale, sensor_node_, 0, wrench_.cycles()});
 }
 
 void MitSupervision::look_at_setpoints(const JointVector& position) noexcept {

@@ -40,7 +40,7 @@ enum class ArmFaultKind : std::uint8_t {
   kDriveFault = 5,       ///< the drive says so; code is its error code
   kDriveState = 6,       ///< a drive left operation enabled unasked
   kFeedbackMissing = 7,  ///< too many cycles without a joint's feedback
-  kSensorStale = 8,      ///< too many cycles without a wrench
+  kSensorStale = 8,      ///< too many cycles without a wrench, or with none but late ones
   kSensorInvalid = 9,    ///< saturated, torn or self-reported fault
   kBusDown = 10,         ///< code: which, of several (CanFrame::bus)
   kBusOff = 11,          ///< likewise

@@ -92,6 +92,23 @@ TEST(BusFaults, WhatLastsEndsTheRunByName) {
   }
 }
 
+// Each cycle brings a wrench, but one from five cycles ago, and later from eight: a contact would
+// be felt that much too late.
+TEST(BusFaults, ASensorWhoseAnswersAreLateByWholeCyclesIsNamed) {
+  const std::string late = "delay:node=4,id=answers,duration_s=100,";
+  for (const std::vector<std::string>& specs : {
+           std::vector<std::string>{late + "time_s=4,delay_s=0.010",
+                                    late + "time_s=4.5,delay_s=0.006"},
+           {late + "time_s=4,delay_s=0.006"},
+       }) {
+    const FaultyRun run(specs);
+    EXPECT_EQ(run.result.ending.arm_fault.kind, ArmFaultKind::kSensorStale) << run.result.reason;
+    EXPECT_NE(run.result.reason.find("node 4 (force/torque sensor): its samples are "),
+              std::string::npos)
+        << run.result.reason;
+  }
+}
+
 // At any length of the cycle the arm, which knows the node, is heard before the executor's own
 // bound.
 TEST(BusFaults, ADeadSensorIsNamedByItsNodeAtAnyCycle) {

@@ -2,15 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <vector>
 
 #include "hw/arm/arm_intake.h"
 #include "hw/arm/arm_output.h"
 #include "hw/arm/arm_supervision.h"
+#include "hw/arm/describe_fault.h"
 #include "hw/arm/saturation_fault.h"
 #include "hw/sensors/canopen_wrench_source.h"
 #include "sim/cell/bus/virtual_bus.h"
 #include "tests/hw/gantry_on_bus.h"
+#include "tests/support/frame_filter.h"
 
 namespace tenon::hw {
 namespace {
@@ -255,6 +258,34 @@ TEST_F(ArmOutputAlone, ABusThatIsGoneIsAFaultAtOnce) {
 TEST_F(ArmOutputAlone, ControllerThatIsBusOffIsNamedRatherThanTheBusThatIsDownForIt) {
   supervision.bus_lost({.up = false, .bus_off = true});
   EXPECT_EQ(supervision.fault().kind, ArmFaultKind::kBusOff);
+}
+
+// Every answer of the sensor is kept back for three cycles: none is missing after the first three.
+TEST(CanopenArm, WrenchesThatAreLateByWholeCyclesAreNamed) {
+  GantryOnBus gantry;
+  ASSERT_TRUE(gantry.prepare_and_enable());
+  for (int i = 0; i < 250; ++i) EXPECT_TRUE(gantry.cycle(ArmRequest::kEnabled));
+  std::deque<CanFrame> kept;
+  const tests::FrameFilter filter(gantry.bus, [&](CanFrame& frame, std::size_t) {
+    if (frame.id != 0x181 && frame.id != 0x182) return true;
+    kept.push_back(frame);
+    if (kept.size() <= 6) return false;
+    frame = kept.front();
+    kept.pop_front();
+    return true;
+  });
+  int cycles = 0;
+  while (gantry.arm.state() == ArmState::kEnabled && cycles < 100) {
+    gantry.cycle(ArmRequest::kEnabled);
+    ++cycles;
+  }
+  EXPECT_EQ(cycles, 6);
+  EXPECT_EQ(gantry.arm.fault().kind, ArmFaultKind::kSensorStale);
+  EXPECT_EQ(describe(gantry.arm.fault(), gantry.robot),
+            "node 4 (force/torque sensor): its samples are 3 SYNCs old by their counter (2001h), "
+            "and have been so, or missing, for more than 5 samples; check what else is on its bus, "
+            "the adapter, and "
+            "whether the sensor hears every SYNC");
 }
 
 }  // namespace

@@ -104,6 +104,93 @@ TEST(WrenchIntakeOfASlowSensor, IsWaitedForInTheCyclesInWhichASampleIsDue) {
   }
 }
 
+ArmFeedback fresh(std::uint16_t counter) {
+  ArmFeedback feedback;
+  feedback.wrench_fresh = true;
+  feedback.wrench_counter = counter;
+  return feedback;
+}
+
+/// A sensor that numbers a sample every `per_sample` cycles, beginning shortly before its counter
+/// wraps, and whose answers come `late` cycles after they were asked for.
+struct NumberedSensor {
+  explicit NumberedSensor(int per_sample = 1)
+      : per_sample(per_sample), wrench(sensor(per_sample)) {}
+
+  static ForceTorqueSensor sensor(int per_sample) {
+    ForceTorqueSensor sensor;
+    sensor.cycles_per_sample = per_sample;
+    return sensor;
+  }
+  /// @return cycles until it is stale, at most so many
+  int cycles(int most, int late) {
+    for (int k = 0; k < most; ++k) {
+      ++cycle;
+      const int asked = cycle - late;
+      const auto counter = static_cast<std::uint16_t>(65'400 + asked / per_sample);
+      const bool answers = asked % per_sample == 0 && asked > newest;
+      if (answers) newest = asked;
+      wrench.update(answers ? fresh(counter) : ArmFeedback{}, true);
+      if (wrench.stale()) return k + 1;
+    }
+    return most;
+  }
+
+  int per_sample;
+  WrenchStaleness wrench;
+  int cycle = 0;
+  int newest = 0;
+};
+
+//  cycle    1  2  3  4  5  6  7  8        late by 3: they miss nothing after the first three
+//  sample   1  2  3  -  -  -  4  5
+TEST(WrenchStaleness, SamplesThatComeLateByWholeCyclesAreNotThisCycles) {
+  for (const int per_sample : {1, 3}) {
+    NumberedSensor sensor(per_sample);
+    EXPECT_EQ(sensor.cycles(10'000, 0), 10'000) << "its counter wraps meanwhile";
+    EXPECT_EQ(sensor.cycles(10'000, per_sample), 10'000) << "one is borne";
+    EXPECT_LE(sensor.cycles(100, 3 * per_sample), 6 * per_sample + 1) << per_sample;
+    EXPECT_GE(sensor.wrench.samples_behind(), 2U);
+    EXPECT_LE(sensor.wrench.samples_behind(), 3U);
+  }
+}
+
+TEST(WrenchStaleness, OfASensorThatCountsOtherwiseNothingIsKnown) {
+  for (const double per_cycle : {0.45, 0.9, 0.996, 1.004, 2.0}) {
+    WrenchStaleness wrench{ForceTorqueSensor{}};
+    std::uint16_t last = 0;
+    for (int cycle = 1; cycle < 20'000; ++cycle) {
+      const auto counter = static_cast<std::uint16_t>(static_cast<int>(per_cycle * cycle));
+      wrench.update(counter == last ? ArmFeedback{} : fresh(counter), true);
+      last = counter;
+      ASSERT_FALSE(wrench.stale()) << per_cycle << " in cycle " << cycle;
+    }
+  }
+  ForceTorqueSensor streams;
+  streams.protocol = SensorProtocol::kRobotousRft;
+  WrenchStaleness wrench{streams};
+  for (std::uint16_t cycle = 0; cycle < 2000; ++cycle) {
+    wrench.update(fresh(static_cast<std::uint16_t>(cycle < 1000 ? cycle : cycle / 2)), true);
+    ASSERT_FALSE(wrench.stale());
+  }
+}
+
+TEST(WrenchStaleness, ASyncInAHundredMayBeMissedAndOneThatNobodyHeardIsNone) {
+  WrenchStaleness wrench{ForceTorqueSensor{}};
+  std::uint16_t counter = 0;
+  for (int cycle = 1; cycle < 20'000; ++cycle) {
+    const bool missed = cycle > 1000 && cycle % 120 == 0;
+    const bool lost = cycle > 1000 && cycle % 7 == 0;
+    wrench.update(missed || lost ? ArmFeedback{} : fresh(++counter), !lost);
+    ASSERT_FALSE(wrench.stale()) << cycle;
+  }
+  wrench.update(fresh(0), true);
+  for (std::uint16_t after = 1; after < 1000; ++after) {
+    wrench.update(fresh(after), true);
+    ASSERT_FALSE(wrench.stale()) << "its counter began anew";
+  }
+}
+
 TEST(WrenchStaleness, ASensorOwesAsManySamplesHoweverLongTheyTake) {
   for (const int cycles_per_sample : {1, 3}) {
     ForceTorqueSensor sensor;
@@ -113,12 +200,12 @@ TEST(WrenchStaleness, ASensorOwesAsManySamplesHoweverLongTheyTake) {
     int cycles = 0;
     for (; !wrench.stale(); ++cycles) {
       EXPECT_LE(wrench.cycles(), WrenchStaleness::cycles_max(sensor));
-      wrench.update(false);
+      wrench.update({}, true);
       missing += wrench.missing() ? 1 : 0;
     }
     EXPECT_EQ(cycles, 5 * cycles_per_sample + 1);
     EXPECT_EQ(missing, cycles_per_sample == 1 ? 6 : 5);
-    wrench.update(true);
+    wrench.update(fresh(1), true);
     EXPECT_FALSE(wrench.stale());
     EXPECT_FALSE(wrench.missing());
   }
