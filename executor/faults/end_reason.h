@@ -38,7 +38,7 @@ enum class EndReason : std::uint8_t {
   kBlind = 27,           ///< value: s without a sample that guarded moves may see, bound
   kTareOffset = 28,      ///< index: wrench axis; value: mean less payload, the cell's bias, bound
   kNotAtGoal = 29,       ///< index: axis; value: where the tool is, wanted: the goal, bound
-  kWrenchFrozen = 30,    ///< value: equal samples in a row, their counter running
+  kWrenchFrozen = 30,    ///< value: equal samples in a row; index: of this wrench axis, or -1: all
   kTareDrift = 31,       ///< index: wrench axis; value: what its mean moved by at rest, bound
   kEncoderJump = 32,     ///< index: joint; value: m or rad since its last answer, bound
   kZeroMoved = 33,       ///< index: wrench axis; value: mean at the end, nothing touching, bound

@@ -18,6 +18,7 @@ inline constexpr double kZeroWatch_s = 2.0;           ///< at the plan's end
 inline constexpr int kTareSamples = 200;
 inline constexpr int kTareTries = 5;              ///< while the sensor is not steady
 inline constexpr int kFrozenSamples = 7;          ///< equal ones in a row
+inline constexpr int kFrozenAxisSamples = 72;     ///< of one axis alone, at the most
 inline constexpr int kTouchSamples = 2;           ///< above the threshold that make a contact
 inline constexpr int kLateCyclesMost = 50;        ///< at once
 inline constexpr int kIncompleteCyclesMost = 30;  ///< at once

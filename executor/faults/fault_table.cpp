@@ -183,8 +183,9 @@ constexpr std::array kTable = {
           "the tare's first sample", EndManner::kHold),
     ended(EndReason::kNotAtGoal, "not_at_goal", "tool's pose at the plan's end against its goal"),
     fault(EndReason::kWrenchFrozen, "wrench_frozen",
-          "every wrench against the one before, while its counter runs",
-          {.cycles = 2, .samples = kFrozenSamples}),
+          "every wrench against the one before, while its counter runs: all axes for 7 samples, "
+          "each by itself",
+          {.cycles = 2, .samples = kFrozenAxisSamples}),
     fault(EndReason::kTareDrift, "tare_drift",
           "mean wrench of later samples at rest in free air against the first's: the tare's "
           "halves, five times, and where a step waits",

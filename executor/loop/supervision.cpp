@@ -87,12 +87,13 @@ std::optional<Ending> Supervision::take_wrench(const ArmFeedback& feedback) {
   const double sample_s = sample_period_s(cell_.robot);
   blind_cycles_ += blind_s_ > sample_s - 0.5e-6 * cell_.robot.cycle_us ? 1 : 0;
   if (!feedback.wrench_fresh || !known_) return std::nullopt;
-  const bool frozen = frozen_watch_.update(feedback.wrench, feedback.wrench_counter);
+  const auto frozen = frozen_watch_.update(feedback.wrench, feedback.wrench_counter);
   switch (wrench_.update(feedback.wrench, tool_)) {
     case WrenchEstimator::Status::kGood:
       if (!frozen) return std::nullopt;
       return Ending{.reason = EndReason::kWrenchFrozen,
-                    .value = static_cast<double>(kFrozenSamples)};
+                    .index = frozen->axis,
+                    .value = static_cast<double>(frozen->samples)};
     case WrenchEstimator::Status::kSaturated: {
       const int axis = wrench_.axis();
       const ForceTorqueSensor& sensor = cell_.robot.sensor;

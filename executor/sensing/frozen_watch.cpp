@@ -23,14 +23,46 @@ double chance_of_the_same_wrench(const ForceTorqueSensor& sensor) {
 }  // namespace
 
 FrozenWatch::FrozenWatch(const ForceTorqueSensor& sensor)
-    : watches_(std::pow(chance_of_the_same_wrench(sensor), kFrozenSamples - 1) <= kChanceMost) {}
+    : watches_(std::pow(chance_of_the_same_wrench(sensor), kFrozenSamples - 1) <= kChanceMost) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    axes_[i].chance = i < 3 ? chance_of_a_count(sensor.force_noise_N, sensor.force_per_count_N)
+                            : chance_of_a_count(sensor.torque_noise_Nm, sensor.torque_per_count_Nm);
+  }
+}
 
-bool FrozenWatch::update(const Vector6& raw, std::uint16_t counter) {
-  const bool same = same_ > 0 && raw == last_ && counter != last_counter_;
-  same_ = same ? same_ + 1 : 1;
+std::optional<FrozenWatch::Frozen> FrozenWatch::update(const Vector6& raw, std::uint16_t counter) {
+  const bool runs = same_ > 0 && counter != last_counter_;
+  std::optional<Frozen> frozen;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    Axis& axis = axes_[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    const bool repeats = runs && raw[at] == last_[at];
+    axis.same = repeats ? axis.same + 1 : 1;
+    if (runs && pairs_ < kLearnedPairs) axis.repeats += repeats ? 1 : 0;
+    if (axis.samples_max == 0 || axis.same <= axis.samples_max || frozen) continue;
+    frozen = Frozen{static_cast<int>(i), axis.same};
+  }
+  if (runs && pairs_ < kLearnedPairs && ++pairs_ == kLearnedPairs) {
+    for (Axis& axis : axes_) learn(axis);
+  }
+  same_ = runs && raw == last_ ? same_ + 1 : 1;
   last_ = raw;
   last_counter_ = counter;
-  return watches_ && same_ >= kFrozenSamples;
+  if (watches_ && same_ >= kFrozenSamples) return Frozen{-1, same_};
+  return frozen;
+}
+
+// An axis that repeats itself in less than nearly every second pair does so wherever in a count it
+// stands, and half as often again at the most; one that is quieter may stand still for ever.
+void FrozenWatch::learn(Axis& axis) const {
+  constexpr double kShareMost = 0.45;
+  constexpr double kHalfAgain = 1.5;
+  const double repeats = axis.repeats;
+  const double share = (repeats + 3.0 * std::sqrt(repeats) + 9.0) / kLearnedPairs;
+  const double chance = std::max(axis.chance, kHalfAgain * share);
+  if (!watches_ || share > kShareMost || axis.chance > kHalfAgain * kShareMost) return;
+  const double pairs = std::ceil(std::log(kChanceMost) / std::log(chance));
+  axis.samples_max = std::min(static_cast<int>(pairs), kFrozenAxisSamples - 1);
 }
 
 }  // namespace tenon::executor

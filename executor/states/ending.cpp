@@ -113,6 +113,12 @@ std::string blind(const Ending& e) {
 }
 
 std::string wrench_frozen(const Ending& e) {
+  if (e.index >= 0) {
+    return format(
+        "the sensor's axis %s has not changed for %.0f samples, though its counter and other axes "
+        "run: it measures no more; restart the sensor, and look at its cable",
+        axis_name(e.index), e.value);
+  }
   return format(
       "the sensor's wrench has not changed for %.0f samples, though its counter runs: it measures "
       "no more; restart the sensor",

@@ -111,7 +111,7 @@ TEST(FaultTable, BoundsInCyclesAreTheRobots) {
   robot.sensor.cycles_per_sample = 3;
   EXPECT_EQ(of_arm(ArmFaultKind::kSensorStale), 6 * 3 + 2);
   EXPECT_EQ(of_arm(ArmFaultKind::kSensorInvalid), 3 + 1);
-  EXPECT_EQ(bound_cycles(*fault_row(EndReason::kWrenchFrozen), robot), 7 * 3 + 2);
+  EXPECT_EQ(bound_cycles(*fault_row(EndReason::kWrenchFrozen), robot), 72 * 3 + 2);
   EXPECT_EQ(of_arm(ArmFaultKind::kBusDown), 2);
 }
 

@@ -43,7 +43,10 @@ TEST(FrozenWatch, TheSeventhEqualSampleIsNamedWhileTheCounterRuns) {
   for (std::uint16_t counter = 1; counter < kFrozenSamples; ++counter) {
     EXPECT_FALSE(watch.update(same, counter)) << counter;
   }
-  EXPECT_TRUE(watch.update(same, kFrozenSamples));
+  const auto frozen = watch.update(same, kFrozenSamples);
+  ASSERT_TRUE(frozen);
+  EXPECT_EQ(frozen->axis, -1) << "all of them";
+  EXPECT_EQ(frozen->samples, kFrozenSamples);
   EXPECT_FALSE(watch.update(same, kFrozenSamples)) << "a counter that stands is another fault";
 }
 
@@ -63,6 +66,44 @@ TEST(FrozenWatch, WhereNoiseIsBelowACountEqualSamplesTellNothing) {
     EXPECT_FALSE(watch.watches()) << counts;
     for (std::uint16_t counter = 0; counter < 100; ++counter) {
       EXPECT_FALSE(watch.update(Vector6::Zero(), counter));
+    }
+  }
+}
+
+// A tenth of the sheet's noise is one count: an axis may stand at it for 30 pairs.
+TEST(FrozenWatch, AnAxisThatStandsWhileTheOthersMeasureIsNamed) {
+  for (const int dead : {0, 2, 4}) {
+    FrozenWatch watch(sensor(10.0));
+    const ForceTorqueSensor alive = sensor(10.0);
+    Random random(5);
+    constexpr int kDies = 1000;
+    int named_at = 0;
+    for (int sample = 0; sample < 2000 && named_at == 0; ++sample) {
+      Vector6 wrench = reading(alive, random);
+      if (sample >= kDies) wrench[dead] = 0.25;
+      const auto frozen = watch.update(wrench, static_cast<std::uint16_t>(sample));
+      if (!frozen) continue;
+      named_at = sample;
+      EXPECT_EQ(frozen->axis, dead);
+    }
+    EXPECT_EQ(named_at - kDies, 31) << "axis " << dead;
+  }
+}
+
+// Less noise than a count: at the edge between two counts it changes often, and within one never.
+TEST(FrozenWatch, AQuietAxisMayStandStill) {
+  for (const double noise_counts : {0.05, 0.2, 0.4, 0.6, 0.8, 1.5}) {
+    for (const double begins_at : {0.0, 0.5}) {
+      FrozenWatch watch(sensor(10.0));
+      const ForceTorqueSensor alive = sensor(10.0);
+      Random random(9);
+      for (int sample = 0; sample < 100'000; ++sample) {
+        Vector6 wrench = reading(alive, random);
+        const double creeps = begins_at + 1e-4 * sample;
+        wrench[1] = std::round(creeps + noise_counts * random.normal());
+        const auto frozen = watch.update(wrench, static_cast<std::uint16_t>(sample));
+        ASSERT_FALSE(frozen) << noise_counts << " counts from " << begins_at << " in " << sample;
+      }
     }
   }
 }

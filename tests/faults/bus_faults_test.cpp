@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tests/support/faulty_options.h"
+#include "tests/support/frame_filter.h"
 #include "tests/support/planned.h"
 #include "tests/support/whole_run.h"
 
@@ -107,6 +111,27 @@ TEST(BusFaults, ASensorWhoseAnswersAreLateByWholeCyclesIsNamed) {
               std::string::npos)
         << run.result.reason;
   }
+}
+
+// The other five go on: a touch along x is then felt by no threshold and no limit.
+TEST(BusFaults, AForceThatStandsStillOnOneAxisIsNamed) {
+  WholeRun run(gantry_cell(), box_task(), box_plan("1"), with_faults({}));
+  ASSERT_TRUE(run.prepare());
+  constexpr std::int64_t kDies_ns = 2'500'000'000;
+  std::optional<std::array<std::uint8_t, 2>> last;
+  const FrameFilter filter(run.bus(), [&](CanFrame& frame, std::size_t) {
+    if (frame.id != 0x181 || run.now_ns() < kDies_ns) return true;
+    if (!last) last = {frame.data[0], frame.data[1]};
+    frame.data[0] = (*last)[0];
+    frame.data[1] = (*last)[1];
+    return true;
+  });
+  while (run.cycle()) ASSERT_LT(run.now_ns(), 40 * kDies_ns);
+  const auto result = run.result();
+  EXPECT_EQ(result.ending.reason, EndReason::kWrenchFrozen) << result.reason;
+  EXPECT_NE(result.reason.find("the sensor's axis x has not changed"), std::string::npos)
+      << result.reason;
+  EXPECT_LT(result.truth.contact_force_N_max, gantry_cell().force_fault_N);
 }
 
 // At any length of the cycle the arm, which knows the node, is heard before the executor's own
