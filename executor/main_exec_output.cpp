@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "executor/dry_run/dry_run_report.h"
+#include "executor/sensing/unnoticed.h"
 #include "hw/bus_load/bus_load.h"
 #include "hw/robot_arm/open_arm.h"
 #include "shared/base/text.h"
@@ -48,6 +49,7 @@ void print_opening(const Plan& plan, const Cell& cell, const DryRun& dry_run) {
               1e3 * latency_s(cell.robot), 1e3 * plan.latency_max_s, loads.c_str());
   std::printf("%s", slowed_steps(dry_run, cell).c_str());
   std::printf("%s", resolved_steps(dry_run, cell).c_str());
+  std::printf("%s", unnoticed_while_taring(cell).c_str());
   std::fflush(stdout);
 }
 

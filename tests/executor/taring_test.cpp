@@ -7,6 +7,7 @@
 
 #include "executor/faults/fault_table.h"
 #include "executor/loop/controller.h"
+#include "executor/sensing/unnoticed.h"
 #include "tests/executor/bench.h"
 
 namespace tenon::executor {
@@ -45,6 +46,18 @@ TEST(Taring, AZeroThatGoesOnMovingIsNamedWithinItsBound) {
   ASSERT_NE(row, nullptr);
   EXPECT_LE(tared, bound_cycles(*row, bench.controller.cell().robot).value());
   EXPECT_GT(tared, 4 * kTareSamples);
+}
+
+TEST(Taring, ACellThatKnowsNoBiasIsToldWhatNobodyNotices) {
+  Cell cell = hand_made_cell();
+  cell.sensor_bias.reset();
+  EXPECT_NE(unnoticed_while_taring(cell).find("has no sensor_bias: nobody notices what pushes"),
+            std::string::npos);
+  cell.sensor_bias.emplace();
+  EXPECT_EQ(unnoticed_while_taring(cell), "");
+  cell.sensor_bias.reset();
+  cell.joint_torque.emplace();
+  EXPECT_EQ(unnoticed_while_taring(cell), "") << "no sensor";
 }
 
 }  // namespace
