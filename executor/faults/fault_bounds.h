@@ -12,6 +12,7 @@ inline constexpr double kBlindMax_s = 0.1;       ///< without a sample that guar
 inline constexpr double kFollowingPatience_s = 0.02;  ///< 6066h of the drives: half
 inline constexpr double kEnableTimeout_s = 5.0;       ///< for the drives
 inline constexpr double kBrakeWatch_s = 0.5;          ///< after the drives are off
+inline constexpr double kBrakeCreep_s = 5.0;          ///< while a joint moves on within its play
 inline constexpr double kHeldPatience_s = 0.1;        ///< at the plan's end
 inline constexpr double kDisableTimeout_s = 3.0;      ///< for the drives to say that they are off
 inline constexpr double kZeroWatch_s = 2.0;           ///< at the plan's end

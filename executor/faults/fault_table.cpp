@@ -168,8 +168,9 @@ constexpr std::array kTable = {
     ended(EndReason::kNothingMet, "nothing_met", "identification"),
     FaultRow{.reason = EndReason::kBrakeFailed,
              .name = "brake_failed",
-             .detector = "joints' positions after the drives are off",
-             .bound = {.cycles = 2, .time_s = kBrakeWatch_s},
+             .detector = "joints' positions after the drives are off, for 0.5 s and for as long as "
+                         "one creeps",
+             .bound = {.cycles = 2, .time_s = kBrakeCreep_s},
              .since = "the drives' being off",
              .reaction = EndManner::kQuickStop,
              .end_state = EndState::kBrakeSlips},

@@ -42,6 +42,7 @@ class ControlTask {
     double quick_stop_s = 0.5;  ///< left to the drives to ramp down; more where a joint needs more
     double brake_watch_s =
         kBrakeWatch_s;  ///< after the drives are off; more than a brake takes to close
+    double brake_creep_s = kBrakeCreep_s;  ///< at the most, while a joint moves on within its play
     BrakeWatch::Parameters brakes;
     Supervision::Parameters supervision;
     FaultMask masked;  ///< in tests alone: these end no run

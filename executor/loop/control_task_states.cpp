@@ -147,7 +147,9 @@ bool ControlTask::brakes_under_watch() const { return cell_.robot.brakes && powe
 // After every end, and each for itself: one drive that is still on, or silent, hides no other's.
 ControlTask::Turn ControlTask::watch_brakes(const ArmFeedback& feedback) {
   const bool told = ending_.slip.joint >= 0;
-  if (brakes_under_watch() && !told && time_in_state_s() < parameters_.brake_watch_s) {
+  const double watch_s =
+      brake_watch_.creeps() ? parameters_.brake_creep_s : parameters_.brake_watch_s;
+  if (brakes_under_watch() && !told && time_in_state_s() < watch_s) {
     const auto slip = brake_watch_.slip();
     if (!slip) return {};
     return Ending{.reason = EndReason::kBrakeFailed,

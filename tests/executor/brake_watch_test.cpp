@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "executor/telemetry/run_result.h"
 #include "tests/executor/bench.h"
 
@@ -75,6 +77,53 @@ TEST(BrakeWatch, WhatMovesAsItsPowerGoesMayRollOut) {
     w.at[0] += way;
     w.hold(1, kEveryJoint, kEveryJoint);
     EXPECT_EQ(w.watch.slip().has_value(), way > 2.5e-3) << way;
+  }
+}
+
+// 0.4 mm/s are 0.2 mm in half a second.
+TEST(BrakeWatch, AJointThatCreepsThroughItsPlayIsWatchedUntilItIsBeyond) {
+  for (const double creep_mps : {0.0, 0.05e-3, 0.12e-3, 0.4e-3, -0.4e-3}) {
+    Watched w;
+    w.hold(500, kEveryJoint, 0);
+    int cycles = 0;
+    for (; cycles < 2600 && !w.watch.slip(); ++cycles) {
+      if (cycles >= 251 && !w.watch.creeps()) break;
+      w.at[0] += 0.002 * creep_mps;
+      w.hold(1, kEveryJoint, kEveryJoint);
+    }
+    const bool fails = std::abs(creep_mps) > 0.1e-3;
+    EXPECT_EQ(w.watch.slip().has_value(), fails) << creep_mps;
+    if (!fails) {
+      EXPECT_EQ(cycles, 251) << "nothing more to wait for";
+    }
+  }
+}
+
+TEST(BrakeWatch, AJointThatSettlesInItsBrakeIsNotWatchedForLong) {
+  Watched w;
+  w.hold(500, kEveryJoint, 0);
+  for (int cycle = 0; cycle < 600; ++cycle) {
+    w.at[0] = 0.4e-3 * (1.0 - std::exp(-0.002 * cycle / 0.2));
+    w.hold(1, kEveryJoint, kEveryJoint);
+  }
+  EXPECT_FALSE(w.watch.creeps());
+  EXPECT_FALSE(w.watch.slip());
+}
+
+// Half a second does not tell.
+TEST(BrakeWatch, APlanIsNotDoneWhileABrakeCreeps) {
+  for (const double watched_s : {kBrakeWatch_s, kBrakeCreep_s}) {
+    Plan plan = hand_made_plan();
+    plan.steps.push_back(hand_made_step(1, 0.01, {{Outcome::kReached, kSuccessorDone}}));
+    Controller::Parameters parameters;
+    parameters.brake_creep_s = watched_s;
+    Bench bench(plan, parameters);
+    bench.run_until(State::kWatching);
+    bench.arm.creep_mps = 0.4e-3;
+    bench.run();
+    EXPECT_EQ(bench.controller.ending().reason,
+              watched_s < 1.0 ? EndReason::kPlanDone : EndReason::kBrakeFailed)
+        << bench.ending();
   }
 }
 

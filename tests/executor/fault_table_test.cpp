@@ -84,7 +84,8 @@ TEST(FaultTable, TheDetectorsHaveItsBounds) {
   EXPECT_EQ(seconds(EndReason::kWrenchMissing), parameters.supervision.wrench_age_max_s);
   EXPECT_EQ(seconds(EndReason::kBlind), parameters.supervision.blind_max_s);
   EXPECT_EQ(seconds(EndReason::kEnableTimeout), parameters.enable_timeout_s);
-  EXPECT_EQ(seconds(EndReason::kBrakeFailed), parameters.brake_watch_s);
+  EXPECT_EQ(seconds(EndReason::kBrakeFailed), parameters.brake_creep_s);
+  EXPECT_EQ(kBrakeWatch_s, parameters.brake_watch_s);
   EXPECT_EQ(seconds(EndReason::kNotHeld), kHeldPatience_s);
   EXPECT_EQ(seconds(EndReason::kNotDisabled), parameters.disable_timeout_s);
   EXPECT_EQ(cycles(EndReason::kFeedbackMissing), parameters.supervision.feedback_misses_max + 2);

@@ -90,6 +90,7 @@ void WallArm::follow_request() {
 
 void WallArm::start_cycle(std::int64_t now_ns) noexcept {
   if (state_ == ArmState::kEnabled) position_ = setpoint_;
+  if (state_ == ArmState::kDisabled) position_[0] += creep_mps * 1e-6 * cell_.robot.cycle_us;
   if (state_ != ArmState::kDisabled) position_[0] += drift_mps * 1e-6 * cell_.robot.cycle_us;
   follow_request();
   answer_ = current_;

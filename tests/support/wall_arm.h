@@ -33,6 +33,7 @@ class WallArm : public Arm {
   Vector6 bias = Vector6::Zero();  ///< of the sensor, its axes
   double noise_N = 0.0;            ///< standard deviation, on forces; a thousandth on torques
   double drift_mps = 0.0;          ///< of joint 0, while it is told to stand
+  double creep_mps = 0.0;          ///< of joint 0, in its brake
 
   // Knobs.
   bool never_enables = false;
