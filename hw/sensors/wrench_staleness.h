@@ -3,6 +3,7 @@
 // the samples that it owes, so that one slower than the cycle has as many tries as any. Only a node
 // that numbers its samples itself tells that they are old. Real-time, no clock; one thread.
 
+#include <cmath>
 #include <cstdint>
 
 #include "hw/sensors/sample_lag.h"
@@ -52,7 +53,7 @@ class WrenchStaleness {
   }
   /// The newest is too old by so many samples, half of one rounded up; 0: it is not.
   [[nodiscard]] std::uint32_t samples_behind() const noexcept {
-    return lag_.late() ? static_cast<std::uint32_t>(lag_.behind_samples() + 0.5) : 0;
+    return lag_.late() ? static_cast<std::uint32_t>(std::lround(lag_.behind_samples())) : 0;
   }
 
  private:
