@@ -55,14 +55,29 @@ Vector3 turned_rad(std::span<const Chain> chains) {
   return turned;
 }
 
-/// Of an axis about which a press was seen to turn the part.
-Vector6 pressed_margins(const Envelope& seen, Vector6 margins, const Vector3& turned_rad) {
-  for (int axis = 3; axis < 6; ++axis) {
-    const double most = std::max(-seen.travelled_min[axis], seen.travelled_max[axis]);
-    if (most > margins[axis]) margins[axis] += turned_rad[axis - 3];
+/// About which axes presses have been seen to turn the part; of these the margins are as large as
+/// its error. Also of later presses, in a plan's order: what the first one leaves on an arm, whose
+/// give and sensor are not the plan's, the next one makes good.
+class PressedMargins {
+ public:
+  PressedMargins(const Vector6& margins, const Vector3& turned_rad)
+      : margins_(margins), turned_rad_(turned_rad) {}
+
+  [[nodiscard]] Vector6 of(const Envelope& seen) {
+    Vector6 margins = margins_;
+    for (int axis = 3; axis < 6; ++axis) {
+      const double most = std::max(-seen.travelled_min[axis], seen.travelled_max[axis]);
+      if (most > margins_[axis]) turns_[static_cast<std::size_t>(axis)] = true;
+      if (turns_[static_cast<std::size_t>(axis)]) margins[axis] += turned_rad_[axis - 3];
+    }
+    return margins;
   }
-  return margins;
-}
+
+ private:
+  Vector6 margins_;
+  Vector3 turned_rad_;
+  std::array<bool, 6> turns_{};
+};
 
 using SeenByOutcome = std::array<Seen, kOutcomes.size()>;
 
@@ -111,7 +126,7 @@ Plan with_envelopes(const Plan& draft, const Task& task, std::span<const Chain> 
   const EnvelopeMargins least = envelope_margins(draft, task);
   Vector6 margins;
   margins << Vector3::Constant(least.position_m), Vector3::Constant(least.angle_rad);
-  const Vector3 turned = turned_rad(chains);
+  PressedMargins pressed_margins(margins, turned_rad(chains));
   Plan plan = draft;
   plan.check_envelopes = true;
   plan.check_places = places_are_told(plan.coordinates);
@@ -125,7 +140,7 @@ Plan with_envelopes(const Plan& draft, const Task& task, std::span<const Chain> 
         const bool pressed = aligns && kOutcomes[outcome] == Outcome::kContact;
         Envelope& envelope = rule.envelope = one.envelope;
         widen(envelope.travelled_min, envelope.travelled_max,
-              pressed ? pressed_margins(envelope, margins, turned) : margins, plan.coordinates);
+              pressed ? pressed_margins.of(envelope) : margins, plan.coordinates);
         widen(envelope.place_min, envelope.place_max, margins,
               plan.check_places ? plan.coordinates : 0);
       } else {

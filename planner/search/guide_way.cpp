@@ -17,6 +17,8 @@ namespace {
 
 // How far a part backs off a face that it has touched, besides its spread.
 constexpr double kOff_m = 3e-3;
+// What of a move along one axis nobody could measure, m or rad.
+constexpr double kNothing = 1e-5;
 constexpr int kLabel = 0;
 // A turned part may meet the mouth's side on the way in, and slides on.
 constexpr int kEnteringMax = 3;
@@ -74,7 +76,7 @@ class Walk {
 
   /// Over the goal along the longest way there first. @return whether one of them leads in
   bool arrive() {
-    const BeliefSummary there = summarise(moved_to(task_.goal, belief_, here().mean, task_), task_);
+    const BeliefSummary there = summarise(moved_to(task_.goal, belief_, task_), task_);
     if (turned() && there.uncertainty_m2 > kNearlyCertain * task_.goal_uncertainty_m2) {
       return stuck("more is uncertain than the goal takes");
     }
@@ -141,20 +143,19 @@ class Walk {
     if (!legs) return stuck("no straight legs lead there");
     waypoints_.push_back(here().mean);
     for (const Vector6& leg : *legs) {
-      if (!move(in_move_axes(task_, here().mean, leg))) return false;
+      const bool last = &leg == &legs->back();
+      if (!(last ? move_to(place) : move(in_move_axes(task_, here().mean, leg)))) return false;
       waypoints_.push_back(here().mean);
     }
     return true;
   }
 
-  bool move_to(const Pose& place) {
-    const Pose mean = here().mean;
-    return move(in_move_axes(task_, mean, displacement_between(mean, place)));
-  }
+  bool move_to(const Pose& place) { return move(aimed(place, belief_, task_)); }
 
   bool move(Vector6 way) {
     for (int axis = 0; axis < 6; ++axis) {
-      if (!has(moved_axes(task_), axis)) way[axis] = 0.0;
+      const bool told = has(moved_axes(task_), axis) && std::abs(way[axis]) > kNothing;
+      if (!told) way[axis] = 0.0;
     }
     const Primitive primitive{kLabel, stored(way)};
     if (primitive.displacement.isZero()) return true;

@@ -32,11 +32,25 @@ Belief spread_about(const Pose& place, const Belief& belief, const Pose& mean, R
   return there;
 }
 
-Belief moved_to(const Pose& place, const Belief& belief, const Pose& mean, const Task& task) {
-  Vector6 way = in_move_axes(task, mean, displacement_between(mean, place));
+Vector6 aimed(const Pose& place, const Belief& belief, const Task& task) {
+  Vector6 way = Vector6::Zero();
+  if (task.motion.carried_axes) {
+    for (const Particle& particle : belief.particles) {
+      const Pose tool = particle.tool();
+      way += in_move_axes(task, tool, displacement_between(tool, place));
+    }
+    way /= static_cast<double>(belief.particles.size());
+  } else {
+    way = displacement_between(mean_pose(belief), place);
+  }
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(moved_axes(task), axis)) way[axis] = 0.0;
   }
+  return way;
+}
+
+Belief moved_to(const Pose& place, const Belief& belief, const Task& task) {
+  const Vector6 way = aimed(place, belief, task);
   Belief there = belief;
   for (Particle& particle : there.particles) {
     Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();

@@ -18,11 +18,16 @@ namespace tenon::planner {
 [[nodiscard]] Belief spread_about(const Pose& place, const Belief& belief, const Pose& mean,
                                   Rollout& rollout);
 
-/// Every particle where the straight move through free space has it that brings the belief's mean
-/// to a place, touching nothing. Unlike spread_about(), what rotations are uncertain by counts as
-/// much as the place is away from what they turn about. Nothing is asked for collisions.
-[[nodiscard]] Belief moved_to(const Pose& place, const Belief& belief, const Pose& mean,
-                              const Task& task);
+/// The straight move that leaves a belief's particles least off a place, in the axes of the move.
+/// Where these are carried (Task::motion), each particle is taken there in axes of its own: one
+/// that is turned goes as far, but not as far along the task's axes, so that what brings the mean
+/// there would leave the others off to one side. Only along what moves go along.
+[[nodiscard]] Vector6 aimed(const Pose& place, const Belief& belief, const Task& task);
+
+/// Every particle where that move through free space has it, touching nothing. Unlike
+/// spread_about(), what rotations are uncertain by counts as much as the place is away from what
+/// they turn about. Nothing is asked for collisions.
+[[nodiscard]] Belief moved_to(const Pose& place, const Belief& belief, const Task& task);
 
 /// By how much more than its origin a turned part is off along each axis, at most.
 /// @param spread m and rad, by axis  @param part around it, tool frame

@@ -65,7 +65,7 @@ TouchTurns::TouchTurns(const Task& task, const Belief& start, const Pose& clear,
 
 /// What a touch tells of a place is worth as much as the angles leave of it there.
 Belief TouchTurns::over_goal(const Belief& belief) const {
-  return moved_to(task_.goal, belief, mean_pose(belief), task_);
+  return moved_to(task_.goal, belief, task_);
 }
 
 /// Along each axis about the mean, at the goal.
@@ -182,7 +182,7 @@ void TouchTurns::touch_sides(const Turn& turn, const Shape& shape, int axis, int
 
 /// What is uncertain where a belief's mean has come through free space.
 Vector6 TouchTurns::spread_at(const Pose& place, const Turn& turn) const {
-  const Belief there = moved_to(place, turn.belief, summarise(turn.belief, task_).mean, task_);
+  const Belief there = moved_to(place, turn.belief, task_);
   return summarise(there, task_).spread;
 }
 
@@ -195,7 +195,7 @@ bool TouchTurns::push(const Turn& turn, const TouchPlace& side, int axis, int si
   const Vector6 spread = spread_at(via, turn);
   const double spread_m = spread[axis] + turned_aside_m(spread, part_)[axis];
   via.position_m[axis] -= sign * (ahead_m + spread_m + kFromFace_m);
-  const Belief before = moved_to(via, turn.belief, from.mean, task_);
+  const Belief before = moved_to(via, turn.belief, task_);
   const bool collides =
       std::any_of(before.particles.begin(), before.particles.end(),
                   [&](const Particle& particle) { return rollout_.in_collision(particle.tool()); });

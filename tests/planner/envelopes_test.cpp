@@ -91,5 +91,26 @@ TEST(Envelopes, APressThatTurnsThePartMayTurnItByMore) {
   EXPECT_NEAR(most_turned_rad(turned_rad, false), turned_rad + margin_rad, 1e-6);
 }
 
+// What the first press has left on an arm.
+TEST(Envelopes, APressMakesGoodWhatAnEarlierOneHasLeft) {
+  Task task = room_task();
+  task.coordinates = 0b100001;
+  const std::vector<Vector6> displacements(3, Vector6::Unit(0) * 0.1);
+  const Plan draft = draft_plan(task, task.starts.front(), {}, displacements);
+  const double margin_rad = envelope_margins(draft, task).angle_rad;
+  Chain chain = turned_chain(0.0, 0.08);
+  const GuardedMove::Result flat = chain.moves.front();
+  chain.moves.push_back(turned_chain(2.0 * margin_rad, 0.08).moves.front());
+  chain.moves.push_back(flat);
+  chain.steps = {0, 1, 2};
+  const Plan plan = with_envelopes(draft, task, std::vector<Chain>{chain});
+  const auto most_rad = [&](std::size_t step) {
+    return plan.steps[step].rule(Outcome::kContact).envelope.travelled_max[5];
+  };
+  EXPECT_NEAR(most_rad(0), margin_rad, 1e-6);
+  EXPECT_NEAR(most_rad(1), 3.0 * margin_rad + 0.08, 1e-6);
+  EXPECT_NEAR(most_rad(2), margin_rad + 0.08, 1e-6);
+}
+
 }  // namespace
 }  // namespace tenon::planner

@@ -208,21 +208,40 @@ TEST(TouchTurns, LeaveASideThatIsNarrowerThanWhatIsUncertain) {
   }
 }
 
-TEST(MovedTo, WhatIsTurnedIsOffByAsMuchAsThePlaceIsAway) {
-  Turns turns(0.04);
+/// Two tools at a place, in environments that are turned about the task's origin, one each way.
+Belief turned_both_ways(const Turns& turns, const Vector3& place_m, double turn_rad) {
   Belief belief = cross_polytope(turns.task, turns.start);
-  belief.particles.resize(1);
-  const Pose start = belief.particles.front().pose;
-  belief.particles.front().environment = {Vector3::Zero(), rotation_of({0.0, 0.0, 0.05})};
-  const auto seen = [](const Belief& there) { return there.particles.front().tool().position_m; };
+  belief.particles.resize(2);
+  for (Particle& particle : belief.particles) {
+    particle.pose = {place_m, turns.task.goal.orientation};
+    particle.environment = {Vector3::Zero(), rotation_of({0.0, 0.0, turn_rad})};
+    turn_rad = -turn_rad;
+  }
+  return belief;
+}
+
+TEST(MovedTo, WhatIsTurnedIsOffByAsMuchAsThePlaceIsAway) {
+  const Turns turns(0.04);
+  const double turn_rad = 0.05;
+  const Belief belief = turned_both_ways(turns, {0.0, 0.0, 0.1}, turn_rad);
   for (const double away_m : {0.0, 0.1, 0.2}) {
-    Pose place = start;
-    place.position_m = {away_m, 0.0, 0.1};
-    const Belief there = moved_to(place, belief, start, turns.task);
-    // The environment is turned about the task's origin, the tool as it was.
-    EXPECT_NEAR(seen(there).y(), -std::sin(0.05) * away_m, 1e-9);
-    EXPECT_NEAR(seen(there).x(), std::cos(0.05) * away_m, 1e-9);
+    const Pose place{{away_m, 0.0, 0.1}, turns.task.goal.orientation};
+    const Belief there = moved_to(place, belief, turns.task);
+    const Vector3 seen_m = there.particles.front().tool().position_m;
+    // No move that both make leaves them less off than the sine of what they are turned by.
+    EXPECT_NEAR((seen_m - place.position_m).norm(), std::sin(turn_rad) * away_m, 1e-9);
     EXPECT_EQ(there.particles.front().signature.bits, 0);
+  }
+}
+
+// A wall has been touched whose distance from the goal does not depend on the turn: every one of
+// the tools is as far away, but the middle of them is nearer.
+TEST(MovedTo, ToolsThatAreTurnedGetWhereAllOfThemCan) {
+  const Turns turns(0.04);
+  const Belief belief = turned_both_ways(turns, {0.1, 0.0, 0.1}, 0.05);
+  const Pose place{{0.0, 0.0, 0.1}, turns.task.goal.orientation};
+  for (const Particle& particle : moved_to(place, belief, turns.task).particles) {
+    EXPECT_LT((particle.tool().position_m - place.position_m).norm(), 1e-9);
   }
 }
 
