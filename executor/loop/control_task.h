@@ -132,6 +132,8 @@ class ControlTask {
   [[nodiscard]] std::optional<Ending> wait_in_free_air();
   /// It does so no more.
   void leave_free_air() { drift_watch_.restart(); }
+  /// The sensor's zero has moved, in its axes, N and Nm.
+  void move_zero(const Vector6& by) { supervision_.move_zero(by); }
 
   [[nodiscard]] double time_in_state_s() const;
   [[nodiscard]] std::int64_t motion_ns() const { return motion_ns_; }

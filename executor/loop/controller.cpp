@@ -30,6 +30,20 @@ ZeroWatch::Parameters zero_parameters(const Plan& plan, const Cell& cell, double
   return p;
 }
 
+/// A tool that moves shakes about twice as much as one that is tared at rest. The zero moves no
+/// farther than what the end of a plan takes for zero.
+FreeAirZero::Parameters free_zero_parameters(const Cell& cell, const Vector6& bound) {
+  constexpr double kInMotion = 2.0;
+  const auto noise = SensorTare::parameters_for(cell.robot.sensor, kTareSamples);
+  const double lever_m = compose(inverse(cell.X_FS), cell.X_FP).position_m.norm();
+  const double force_N = kInMotion * noise.force_deviation_max_N;
+  const double torque_Nm = kInMotion * noise.torque_deviation_max_Nm + lever_m * force_N;
+  FreeAirZero::Parameters p;
+  p.deviation_max << Vector3::Constant(force_N), Vector3::Constant(torque_Nm);
+  p.moved_max = bound;
+  return p;
+}
+
 }  // namespace
 
 Controller::Controller(const Cell& cell, const DryRun& dry_run, const Parameters& parameters)
@@ -42,7 +56,8 @@ Controller::Controller(const Cell& cell, const DryRun& dry_run, const Parameters
       runner_(plan_),
       zero_watch_(zero_parameters(
           plan_, ControlTask::cell(), parameters.hold_s,
-          dry_run.steps.empty() ? Vector6(Vector6::Zero()) : dry_run.steps.back().resolution)) {}
+          dry_run.steps.empty() ? Vector6(Vector6::Zero()) : dry_run.steps.back().resolution)),
+      free_zero_(free_zero_parameters(ControlTask::cell(), zero_watch_.bounds())) {}
 
 // --- states ---------------------------------------------------------------------------------
 
@@ -195,6 +210,7 @@ ControlTask::Turn Controller::run(const ArmFeedback& /*feedback*/) {
   }
   phase_ = output.phase;
   seen_ = input.pose;
+  follow_zero();
   switch (runner_.status()) {
     case PlanRunner::Status::kRunning:
       return {};
@@ -208,6 +224,18 @@ ControlTask::Turn Controller::run(const ArmFeedback& /*feedback*/) {
     }
   }
   return {};
+}
+
+// The wrench of this cycle is what the move has seen; the zero moves for the next one.
+void Controller::follow_zero() {
+  const bool held = runner_.signature_before().bits != 0;
+  if (runner_.move_started()) free_zero_.begin(!held);
+  if (runner_.signature().bits != 0 || phase_ == GuardedMove::Phase::kProbing) free_zero_.touch();
+  if (supervision().wrench_usable()) free_zero_.add(supervision().contact_at_sensor());
+  if (phase_ != GuardedMove::Phase::kDone) return;
+  const StepReport& last = runner_.report(runner_.report_count() - 1);
+  if (last.result.outcome != Outcome::kReached) return;
+  if (const auto moved = free_zero_.end()) move_zero(*moved);
 }
 
 ControlTask::Turn Controller::ramp_down() {
@@ -271,7 +299,10 @@ ControlTask::Turn Controller::hold() {
   }
   const bool free = ending().reason == EndReason::kPlanDone && runner_.signature().bits == 0;
   if (!free || zero_told_ || time_in_state_s() >= kZeroWatch_s) return held();
-  if (supervision().wrench_usable()) (void)zero_watch_.add(supervision().wrench());
+  if (supervision().wrench_usable()) {
+    const Vector6 moved = supervision().at_tool(free_zero_.moved());
+    (void)zero_watch_.add(supervision().wrench() + moved);
+  }
   switch (zero_watch_.status()) {
     case ZeroWatch::Status::kLooking:
       return {};

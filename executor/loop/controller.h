@@ -18,6 +18,7 @@
 #include "executor/motion/pace.h"
 #include "executor/motion/plan_runner.h"
 #include "executor/motion/stop_profile.h"
+#include "executor/sensing/free_air_zero.h"
 #include "executor/sensing/zero_watch.h"
 #include "shared/cell/cell.h"
 #include "shared/plan/plan.h"
@@ -69,6 +70,7 @@ class Controller : public ControlTask {
   [[nodiscard]] Turn start_approach();
   [[nodiscard]] bool waits_for_the_user() noexcept;
   void pass_time();
+  void follow_zero();
   [[nodiscard]] Turn wait_at_rest();
   void leave_the_tool();
   void yield_here();
@@ -103,6 +105,7 @@ class Controller : public ControlTask {
   JointMove approach_;
   StopProfile stop_;
   ZeroWatch zero_watch_;  ///< at the plan's end
+  FreeAirZero free_zero_;
   bool zero_told_ = false;
   int unheld_cycles_ = 0;  ///< in a row, at the plan's end
   bool unheld_told_ = false;

@@ -40,6 +40,8 @@ class Supervision {
   /// From now on the mean raw reading means no contact, and the force is watched.
   /// @return that it cannot be so: without the payload it is not what the cell knows as the bias
   [[nodiscard]] std::optional<Ending> tare(const Vector6& mean_raw);
+  /// What the sensor reads while nothing touches has moved so far, in its axes, N and Nm.
+  void move_zero(const Vector6& by) { wrench_.move_zero(by); }
   /// Once a cycle, after update(): the velocity commanded to the tool, task axes, and the joints'
   /// positions.
   void commanded(const Vector6& velocity, const JointVector& position) {
@@ -57,6 +59,10 @@ class Supervision {
   [[nodiscard]] const Vector6& wrench() const { return wrench_.external(); }
   /// The same in the sensor's axes about its origin, where its noise is what the data sheet says.
   [[nodiscard]] const Vector6& contact_at_sensor() const { return wrench_.contact(); }
+  /// What the sensor reads, in its axes, as a wrench like wrench().
+  [[nodiscard]] Vector6 at_tool(const Vector6& at_sensor) const {
+    return wrench_.at_tool(at_sensor, tool_);
+  }
   /// At which an arm may stop its drives by itself.
   [[nodiscard]] ForceLimit force_limit() const;
   /// It is a fresh sample, and guarded moves may see it.

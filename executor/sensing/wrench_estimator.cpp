@@ -60,12 +60,17 @@ WrenchEstimator::Status WrenchEstimator::update(const Vector6& raw, const Pose& 
   const Vector3 com_mps2 = com_acceleration_mps2(to_com_T);
   unloaded_ = bias_ + payload_wrench(rotation.conjugate() * (gravity_T_mps2_ - com_mps2));
   contact_ = raw - unloaded_;
-
-  // The same wrench about the tool tip instead of the sensor's origin.
-  const Vector3 force_N = contact_.head<3>();
-  const Vector3 torque_Nm = contact_.tail<3>() - X_SP_.position_m.cross(force_N);
-  external_ << rotation * force_N, rotation * torque_Nm;
+  external_ = at_tool(contact_, X_TP);
   return Status::kGood;
+}
+
+Vector6 WrenchEstimator::at_tool(const Vector6& at_sensor, const Pose& X_TP) const {
+  const Eigen::Quaterniond rotation = R_TS(X_TP);
+  const Vector3 force_N = at_sensor.head<3>();
+  const Vector3 torque_Nm = at_sensor.tail<3>() - X_SP_.position_m.cross(force_N);
+  Vector6 wrench;
+  wrench << rotation * force_N, rotation * torque_Nm;
+  return wrench;
 }
 
 }  // namespace tenon::executor

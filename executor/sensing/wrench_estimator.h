@@ -36,6 +36,11 @@ class WrenchEstimator {
   /// Sets the bias so that the mean raw reading at rest at this pose means no contact.
   void tare(const Vector6& mean_raw, const Pose& X_TP);
 
+  /// Moves the bias, in sensor axes: what has been read there means no contact from now on.
+  void move_zero(const Vector6& by) { bias_ += by; }
+  /// What the sensor reads, N and Nm, as a wrench at the tool tip in task axes.
+  [[nodiscard]] Vector6 at_tool(const Vector6& at_sensor, const Pose& X_TP) const;
+
   /// What the sensor reads of itself, by the last tare; its axes, N and Nm.
   [[nodiscard]] const Vector6& bias() const { return bias_; }
   /// What the sensor reads while nothing touches, its axes, N: itself and the payload, as of the

@@ -56,6 +56,7 @@ class ZeroWatch {
   /// Of that axis, the last mean and its bound.
   [[nodiscard]] double mean() const { return before_[axis_]; }
   [[nodiscard]] double bound() const { return parameters_.bound[axis_]; }
+  [[nodiscard]] const Vector6& bounds() const { return parameters_.bound; }
 
  private:
   Parameters parameters_;

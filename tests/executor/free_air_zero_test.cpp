@@ -1,0 +1,91 @@
+// A sensor's zero follows what a move through free air shows of it, and nothing that touches.
+
+#include "executor/sensing/free_air_zero.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/base/random.h"
+#include "tests/executor/bench.h"
+
+namespace tenon::executor {
+namespace {
+
+constexpr double kMoved_N = 0.4;
+constexpr double kMost_N = 0.75;  // half of what counts as gone
+
+/// A move of so many samples with a force on z that grows from nothing to its end.
+void go(FreeAirZero& zero, int samples, double from_N, double to_N) {
+  Random random(1);
+  zero.begin(true);
+  for (int i = 0; i < samples; ++i) {
+    const double force_N = from_N + (to_N - from_N) * i / samples;
+    zero.add(Vector6::Unit(2) * (force_N + 0.1 * random.normal()));
+  }
+}
+
+TEST(FreeAirZero, TakesWhatTheEndOfAFreeWayReads) {
+  FreeAirZero zero({});
+  go(zero, 1000, 0.3, 0.4);
+  const auto moved = zero.end();
+  ASSERT_TRUE(moved.has_value());
+  EXPECT_NEAR((*moved)[2], 0.4, 0.02);
+  EXPECT_NEAR((*moved)[1], 0.0, 1e-12);
+  EXPECT_EQ(zero.moved(), *moved);
+}
+
+TEST(FreeAirZero, GoesNoFartherThanItMayHoweverOftenItMoves) {
+  FreeAirZero zero({});
+  double sum_N = 0.0;
+  for (int move = 0; move < 5; ++move) {
+    go(zero, 200, 0.3, 0.3);
+    sum_N += zero.end().value_or(Vector6::Zero())[2];
+  }
+  EXPECT_NEAR(sum_N, kMost_N, 1e-9);
+  EXPECT_NEAR(zero.moved()[2], kMost_N, 1e-9);
+}
+
+TEST(FreeAirZero, LearnsNothingFromAWayThatWasNotFreeOrTooShort) {
+  FreeAirZero zero({});
+  go(zero, 30, 0.3, 0.3);
+  EXPECT_FALSE(zero.end().has_value()) << "too short";
+  go(zero, 500, 0.0, 1.5);
+  EXPECT_FALSE(zero.end().has_value()) << "a push that grows";
+  go(zero, 200, 0.3, 0.3);
+  zero.touch();
+  go(zero, 0, 0.0, 0.0);
+  EXPECT_FALSE(zero.end().has_value()) << "touched";
+  zero.begin(false);
+  for (int i = 0; i < 200; ++i) zero.add(Vector6::Unit(2) * 0.3);
+  EXPECT_FALSE(zero.end().has_value()) << "began in a contact";
+  EXPECT_TRUE(zero.moved().isZero());
+}
+
+/// To and fro along x, `moves` times, nothing near.
+Plan to_and_fro(int moves) {
+  Plan plan = hand_made_plan();
+  for (int i = 0; i < moves; ++i) {
+    const Successor next = i + 1 < moves ? static_cast<Successor>(i + 1) : kSuccessorDone;
+    plan.steps.push_back(hand_made_step(0, i % 2 == 0 ? 0.03 : -0.03, {{Outcome::kReached, next}}));
+  }
+  return plan;
+}
+
+// Uncorrected, 0.4 N would have pushed the tool nearly 0.4 mm aside: K is 1000 N/m.
+TEST(FreeAirZero, AToolInFreeAirComesBackToItsWay) {
+  Bench bench(to_and_fro(8));
+  bench.arm.noise_N = 0.1;
+  bench.run_until(State::kRunning);
+  bench.arm.bias[1] += kMoved_N;  // along the tool's z
+  double most_m = 0.0;
+  const auto aside_m = [&] { return std::abs(bench.arm.tool().position_m.z()); };
+  bench.run([&] { most_m = std::max(most_m, aside_m()); });
+  EXPECT_EQ(bench.controller.ending().reason, EndReason::kPlanDone) << bench.ending();
+  EXPECT_GT(most_m, 0.1e-3);
+  EXPECT_LT(aside_m(), 0.03e-3);
+}
+
+}  // namespace
+}  // namespace tenon::executor
