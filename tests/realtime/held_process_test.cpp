@@ -2,10 +2,7 @@
 // Nothing here depends on how fast the machine is: a run that ended because it came too late too
 // often is repeated.
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <cstring>
@@ -20,6 +17,7 @@
 #include "tests/support/commands.h"
 #include "tests/support/places.h"
 #include "tests/support/sim_process.h"
+#include "tests/support/typed_input.h"
 
 namespace tenon::tests {
 namespace {
@@ -36,25 +34,15 @@ class HeldRun {
     sim_ = std::make_unique<SimProcess>(
         folder_.path(), "4",
         std::vector<std::string>{"--once", "--fault", "brake-failure:node=3,at=enabling"}, cell);
-    EXPECT_EQ(::mkfifo(file("keys").c_str(), 0600), 0);
-    keys_ = ::open(file("keys").c_str(), O_RDWR | O_CLOEXEC);
-    EXPECT_GE(keys_, 0);
     exec_ = std::make_unique<ChildProcess>(
         folder_.path(),
-        std::vector<std::string>{
-            "sh", "-c", "exec \"$0\" \"$@\" <" + file("keys"), executable("tenon-exec"), "--cell",
-            cell, "--plan", put_box_plan(folder_, "4"), "--can", sim_->uri(), "--lcm-url", "none",
-            "--step", "--json", file("result.json"), "--black-box", file("box.csv")});
+        keys_.read_by(executable("tenon-exec"),
+                      {"--cell", cell, "--plan", put_box_plan(folder_, "4"), "--can", sim_->uri(),
+                       "--lcm-url", "none", "--step", "--json", file("result.json"), "--black-box",
+                       file("box.csv")}));
   }
-  HeldRun(const HeldRun&) = delete;
-  HeldRun& operator=(const HeldRun&) = delete;
-  ~HeldRun() { hang_up(); }
 
-  /// Standard input ends.
-  void hang_up() {
-    if (keys_ >= 0) ::close(keys_);
-    keys_ = -1;
-  }
+  void hang_up() { keys_.hang_up(); }
   /// Stopped by the user while the first step waits, and then held.
   [[nodiscard]] bool reach_holding() {
     if (!exec_->wait_until([&] { return exec_->out().find(" waits:") != std::string::npos; })) {
@@ -84,8 +72,8 @@ class HeldRun {
   [[nodiscard]] std::string file(const std::string& name) const { return folder_.path() / name; }
 
   ScratchFolder folder_;
+  TypedInput keys_{file("keys")};
   std::unique_ptr<SimProcess> sim_;
-  int keys_ = -1;
   std::unique_ptr<ChildProcess> exec_;
 };
 

@@ -2,10 +2,7 @@
 // depends on how fast the machine is: a run that ended because it came too late too often is
 // repeated.
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +23,7 @@
 #include "tests/support/commands.h"
 #include "tests/support/places.h"
 #include "tests/support/sim_process.h"
+#include "tests/support/typed_input.h"
 
 namespace tenon::tests {
 namespace {
@@ -36,30 +34,16 @@ class KeyedRun {
   KeyedRun(const ScratchFolder& folder, const std::string& plan)
       : folder_(folder),
         sim_(folder.path(), "4",
-             {"--once", "--offset", "x_m=0.02,y_m=-0.015", "--json", file("truth.json")}) {
-    EXPECT_EQ(::mkfifo(file("keys").c_str(), 0600), 0);
-    keys_ = ::open(file("keys").c_str(), O_RDWR | O_CLOEXEC);
-    EXPECT_GE(keys_, 0);
-    exec_ = std::make_unique<ChildProcess>(
-        folder.path(),
-        std::vector<std::string>{
-            "sh", "-c", "exec \"$0\" \"$@\" <" + file("keys"), executable("tenon-exec"), "--cell",
-            gantry_cell_file(), "--plan", plan, "--can", sim_.uri(), "--lcm-url", "none", "--keys",
-            "--log", file("log"), "--json", file("result.json"), "--black-box", file("box.csv")});
-  }
-  KeyedRun(const KeyedRun&) = delete;
-  KeyedRun& operator=(const KeyedRun&) = delete;
-  ~KeyedRun() { hang_up(); }
+             {"--once", "--offset", "x_m=0.02,y_m=-0.015", "--json", file("truth.json")}),
+        keys_(file("keys")),
+        exec_(folder.path(),
+              keys_.read_by(executable("tenon-exec"),
+                            {"--cell", gantry_cell_file(), "--plan", plan, "--can", sim_.uri(),
+                             "--lcm-url", "none", "--keys", "--log", file("log"), "--json",
+                             file("result.json"), "--black-box", file("box.csv")})) {}
 
-  void type(const std::string& words) const {
-    EXPECT_EQ(::write(keys_, words.data(), words.size()), static_cast<ssize_t>(words.size()));
-  }
-  /// Standard input ends.
-  void hang_up() {
-    if (keys_ >= 0) ::close(keys_);
-    keys_ = -1;
-  }
-  [[nodiscard]] ChildProcess& exec() { return *exec_; }
+  [[nodiscard]] TypedInput& keys() { return keys_; }
+  [[nodiscard]] ChildProcess& exec() { return exec_; }
   [[nodiscard]] ChildProcess& sim() { return sim_.process(); }
   [[nodiscard]] std::string file(const std::string& name) const { return folder_.path() / name; }
   [[nodiscard]] nlohmann::json json(const std::string& name) const {
@@ -68,16 +52,16 @@ class KeyedRun {
 
   /// In the plan's second step, which moves for more than a second.
   [[nodiscard]] bool reach_mid_motion() {
-    return exec_->wait_until([&] { return exec_->out().find("\nstep  0:") != std::string::npos; });
+    return exec_.wait_until([&] { return exec_.out().find("\nstep  0:") != std::string::npos; });
   }
   [[nodiscard]] bool says(const std::string& words) {
-    return exec_->wait_until([&] { return exec_->err().find(words) != std::string::npos; });
+    return exec_.wait_until([&] { return exec_.err().find(words) != std::string::npos; });
   }
   /// So many more cycles have been logged.
   [[nodiscard]] bool let_pass(std::uintmax_t cycles) {
     constexpr std::uintmax_t kCycle_bytes = 600;
     const std::uintmax_t until = logged_bytes() + cycles * kCycle_bytes;
-    return exec_->wait_until([&] { return logged_bytes() > until; });
+    return exec_.wait_until([&] { return logged_bytes() > until; });
   }
 
  private:
@@ -89,8 +73,8 @@ class KeyedRun {
 
   const ScratchFolder& folder_;
   SimProcess sim_;
-  int keys_ = -1;
-  std::unique_ptr<ChildProcess> exec_;
+  TypedInput keys_;
+  ChildProcess exec_;
 };
 
 /// The most cycles in a row of one step in which its setpoint stood still.
@@ -147,8 +131,8 @@ TEST_F(KeysProcess, AMoveIsPausedInsideByAWordAndGoesOnByAnother) {
   do {
     KeyedRun* run = begin_moving();
     ASSERT_NE(run, nullptr);
-    run->type("p\n");
-    if (run->says("pausing") && run->let_pass(2 * kPaused_cycles)) run->type("r\n");
+    run->keys().type("p\n");
+    if (run->says("pausing") && run->let_pass(2 * kPaused_cycles)) run->keys().type("r\n");
     status = run->exec().wait();
   } while (status == 1 && attempts.again(keyed->json("result.json")));
   ASSERT_EQ(status, 0) << keyed->exec().err();
@@ -165,9 +149,9 @@ TEST_F(KeysProcess, APausedMoveThatNobodyCanLetGoOnIsStopped) {
   do {
     KeyedRun* run = begin_moving();
     ASSERT_NE(run, nullptr);
-    run->type("p\n");
+    run->keys().type("p\n");
     const bool said = run->says("pausing") && run->let_pass(100);
-    if (said) run->hang_up();
+    if (said) run->keys().hang_up();
     status = run->exec().wait();
   } while (status == 1 && attempts.again(keyed->json("result.json")));
   EXPECT_EQ(status, 1);
@@ -181,7 +165,7 @@ TEST_F(KeysProcess, ATerminalThatClosesInAPauseStopsTheMove) {
   do {
     KeyedRun* run = begin_moving();
     ASSERT_NE(run, nullptr);
-    run->type("p\n");
+    run->keys().type("p\n");
     if (run->says("pausing") && run->let_pass(100)) run->exec().send(SIGHUP);
     status = run->exec().wait();
   } while (status == 1 && attempts.again(keyed->json("result.json")));
