@@ -55,7 +55,6 @@ TEST(FreeAirZero, LearnsNothingFromAWayThatWasNotFreeOrTooShort) {
   EXPECT_FALSE(zero.end().has_value()) << "a push that grows";
   go(zero, 200, 0.3, 0.3);
   zero.touch();
-  go(zero, 0, 0.0, 0.0);
   EXPECT_FALSE(zero.end().has_value()) << "touched";
   zero.begin(false);
   for (int i = 0; i < 200; ++i) zero.add(Vector6::Unit(2) * 0.3);
