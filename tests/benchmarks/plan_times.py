@@ -23,6 +23,7 @@ TASKS = ROOT / "planner" / "tasks"
 SHIPPED = [
     "box_on_table_2d",
     "box_on_table_3d",
+    "connector",
     "peg_in_hole_2d",
     "peg_in_hole_2d#clearance_1mm",
     "peg_in_hole_2d#clearance_0.5mm",

@@ -9,7 +9,8 @@
 
 namespace tenon::tests {
 
-/// By the file's name: a round peg with a key along it, and the block that it goes into.
+/// By the file's name: a round peg with a key along it, and the block that it goes into; the plug
+/// of a mains lead, and the inlet that it goes into.
 [[nodiscard]] std::map<std::string, TriangleMesh> example_parts();
 
 }  // namespace tenon::tests

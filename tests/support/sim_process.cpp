@@ -8,12 +8,13 @@ namespace tenon::tests {
 namespace {
 
 std::vector<std::string> command(const std::string& ready_file, const std::string& start,
-                                 const std::vector<std::string>& more, const std::string& cell) {
+                                 const std::vector<std::string>& more, const std::string& cell,
+                                 const std::string& task) {
   std::vector<std::string> all = {executable("tenon-sim"),
                                   "--cell",
                                   cell.empty() ? gantry_cell_file() : cell,
                                   "--task",
-                                  box_task_file(),
+                                  task.empty() ? box_task_file() : task,
                                   "--start",
                                   start,
                                   "--can",
@@ -27,8 +28,9 @@ std::vector<std::string> command(const std::string& ready_file, const std::strin
 }  // namespace
 
 SimProcess::SimProcess(const std::filesystem::path& folder, const std::string& start,
-                       const std::vector<std::string>& more, const std::string& cell)
-    : process_(folder, command(folder / "ready", start, more, cell)) {
+                       const std::vector<std::string>& more, const std::string& cell,
+                       const std::string& task)
+    : process_(folder, command(folder / "ready", start, more, cell, task)) {
   if (!process_.wait_until([&] { return std::filesystem::exists(folder / "ready"); })) {
     throw std::runtime_error("tenon-sim did not start: " + process_.err());
   }

@@ -13,9 +13,11 @@ class SimProcess {
  public:
   /// Serves the box task's start on the gantry's cell, and returns once it listens.
   /// @param more further options  @param cell a cell file, empty for the gantry's
+  /// @param task a task file, empty for the box's
   /// @throws std::runtime_error with its error where it does not start
   SimProcess(const std::filesystem::path& folder, const std::string& start,
-             const std::vector<std::string>& more, const std::string& cell = {});
+             const std::vector<std::string>& more, const std::string& cell = {},
+             const std::string& task = {});
 
   [[nodiscard]] ChildProcess& process() { return process_; }
   [[nodiscard]] int port() const { return port_; }

@@ -1,0 +1,46 @@
+// A part of triangles in real time: six axes plug a connector in, with half a millimetre to each
+// side. Nothing here depends on how fast the machine is: a run that ended
+// because it came too late too often is repeated.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/busy_machine.h"
+#include "tests/support/child_process.h"
+#include "tests/support/places.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/sim_process.h"
+
+namespace tenon::tests {
+namespace {
+
+TEST(Connector, IsPluggedInBySixAxesInRealTime) {
+  const ScratchFolder folder;
+  const std::string cell = in_tree("hw/cells/csp6_bench.yaml");
+  const std::string truth = folder.path() / "truth.json";
+  const std::string result = folder.path() / "result.json";
+  int status = 0;
+  Attempts attempts;
+  do {
+    std::filesystem::remove(folder.path() / "ready");
+    SimProcess sim(folder.path(), "1",
+                   {"--once", "--offset", "x_m=0.002,y_m=-0.0025,z_m=0.001", "--json", truth}, cell,
+                   in_tree("planner/tasks/connector.yaml"));
+    ChildProcess exec(folder.path(),
+                      {executable("tenon-exec"), "--cell", cell, "--plan",
+                       shared_plan("connector_csp6_bench"), "--can", sim.uri(), "--lcm-url", "none",
+                       "--json", result, "--black-box", folder.path() / "box.csv"});
+    status = exec.wait();
+    EXPECT_EQ(sim.process().wait(), 0) << sim.process().err();
+  } while (status == 1 && attempts.again(nlohmann::json::parse(folder.get("result.json"))));
+  ASSERT_EQ(status, 0) << folder.get("result.json");
+  EXPECT_EQ(nlohmann::json::parse(folder.get("result.json")).at("reason"), "plan_done");
+  EXPECT_EQ(nlohmann::json::parse(folder.get("truth.json")).at("within_tolerance"), true);
+  EXPECT_EQ(nlohmann::json::parse(folder.get("truth.json")).at("solver_messages"), 0);
+}
+
+}  // namespace
+}  // namespace tenon::tests
