@@ -1,10 +1,12 @@
 #!/bin/bash
-# Plans a task under uncertainty, starts a virtual arm whose table is not where it was said to be, and
-# executes the plan by touch over CANopen, in real time. Installs what is missing and builds first.
+# Plans a task under uncertainty, starts a virtual arm before which things are not where they were said to
+# be, and executes the plan by touch over CANopen, in real time. Installs what is missing and builds first.
 #
 #   ./demo.sh [--seed N] [--start NAME] [--task NAME] [--cell NAME] [--output DIR]
 #             [--bin DIR]
 #
+# The task is planner/tasks/connector.yaml where none is named, the start the task's first, and the cell one of
+# hw/cells that is meant for the task.
 # --bin names programs that are there already, such as /usr/bin: then nothing is installed or built.
 #
 # Exit status 0: the part ended within the task's tolerance of its goal. 1: it did not; the reason is
@@ -12,7 +14,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-seed=1 start=1 task=box_on_table_2d cell=csp6 output=build/demo bin=
+seed=1 start='' task=connector cell='' output=build/demo bin=
 while (($#)); do
   case "$1" in
     --seed | --start | --task | --cell | --output | --bin)
@@ -24,7 +26,7 @@ while (($#)); do
       shift 2
       ;;
     --help)
-      sed -n '2,11s/^# \{0,1\}//p' "$0"
+      sed -n '2,13s/^# \{0,1\}//p' "$0"
       exit 0
       ;;
     *)
@@ -47,12 +49,21 @@ if [[ -z $bin ]]; then
   bin=build/release/bin
   echo
 fi
+if [[ -z $cell ]]; then
+  case $task in  # what each cell's file says that it stands before
+    box_on_table_*) cell=csp6 ;;
+    peg_in_hole_tilt) cell=csp6_peg ;;
+    peg_in_hole_*) cell=gantry3_peg ;;
+    toy_1d) cell=gantry3 ;;
+    *) cell=csp6_bench ;;
+  esac
+fi
 task_file=planner/tasks/$task.yaml cell_file=hw/cells/$cell.yaml
 mkdir -p "$output"
 rm -f "$output"/{plan.tnp,plan.json,plan.html,run.html,truth.json,sim.out,run.lcmlog,run.can.log,result.json,black-box.csv}
 
-echo "== Plan: $task from start $start, positions uncertain"
-"$bin/tenon-plan" "$task_file" --start "$start" --cell "$cell_file" --threads "$(nproc)" -o "$output/plan.tnp" \
+echo "== Plan: $task${start:+ from start $start}, positions uncertain"
+"$bin/tenon-plan" "$task_file" ${start:+--start "$start"} --cell "$cell_file" --threads "$(nproc)" -o "$output/plan.tnp" \
   --json "$output/plan.json"
 "$bin/tenon-inspect" "$output/plan.tnp" --task "$task_file" --cell "$cell_file" --statistics "$output/plan.json" \
   --report "$output/plan.html" >/dev/null
@@ -60,7 +71,7 @@ echo "== Plan: $task from start $start, positions uncertain"
 echo
 echo "== Virtual arm: $cell, the environment displaced by a draw of seed $seed"
 : >"$output/sim.out"
-"$bin/tenon-sim" --cell "$cell_file" --task "$task_file" --start "$start" --seed "$seed" \
+"$bin/tenon-sim" --cell "$cell_file" --task "$task_file" ${start:+--start "$start"} --seed "$seed" \
   --can slcan-listen://127.0.0.1:0 --once --json "$output/truth.json" >"$output/sim.out" 2>&1 &
 sim=$!
 trap 'kill "$sim" 2>/dev/null || true' EXIT

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""The how-tos' pictures, as the programs draw them of the how-to's own task: made again, and held against those in the
-tree, whose numbers may differ by rounding.
+"""The documents' pictures, as the programs draw them of the how-to's own task and of the demo's: made again, and held
+against those in the tree, whose numbers may differ by rounding.
 
-  pictures.py BIN SOURCE [--write]     --write: puts them into the tree
+  pictures.py BIN SOURCE PLANS [--write]     --write: puts them into the tree
+
+PLANS: the folder of the plans that the tests share.
 """
 import pathlib
 import re
@@ -11,20 +13,21 @@ import sys
 import tempfile
 
 HOWTO = "planner/FIRST_TASK.md"
-# What is beside a label in the how-to: the page that it is taken from, and the title that it has there.
+# What is beside a label in a document: the document, the page that it is taken from, and the title that it has there.
 PICTURES = {
-    "planner/pictures/pocket_above.svg": ("pocket.html", "Start above, Seen from above"),
-    "planner/pictures/pocket_side.svg": ("pocket.html", "Start above, Seen from the side, along y"),
-    "planner/pictures/pocket_plan.svg": ("plan.html", "The plan, Seen from the side, along y"),
-    "planner/pictures/pocket_uncertainty.svg": ("plan.html", "Uncertainty after each step"),
+    "planner/pictures/pocket_above.svg": (HOWTO, "pocket.html", "Start above, Seen from above"),
+    "planner/pictures/pocket_side.svg": (HOWTO, "pocket.html", "Start above, Seen from the side, along y"),
+    "planner/pictures/pocket_plan.svg": (HOWTO, "plan.html", "The plan, Seen from the side, along y"),
+    "planner/pictures/pocket_uncertainty.svg": (HOWTO, "plan.html", "Uncertainty after each step"),
+    "planner/pictures/connector_plan.svg": ("README.md", "connector.html", "The plan, Seen from the side, along y"),
 }
-BYTES_MAX = 16_000
+BYTES_MAX = 20_000
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 WITHIN = 0.05  # mm, or of the chart's units
 
 
-def make_pages(binaries, source, folder):
-    """By the commands of the how-to."""
+def make_pages(binaries, source, plans, folder):
+    """By the commands of the how-to; the demo's page of the plan that the build has made for it."""
     text = (source / HOWTO).read_text()
     (folder / "hw").symlink_to(source / "hw")
     (folder / "pocket.yaml").write_text(re.search(r"^```yaml\n(.*?)^```$", text, re.M | re.S)[1])
@@ -33,6 +36,9 @@ def make_pages(binaries, source, folder):
         for command in line.strip().splitlines():
             program, *words = command.split()
             subprocess.run([binaries / program, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([binaries / "tenon-inspect", plans / "connector_csp6_bench.tnp", "--task",
+                    source / "planner/tasks/connector.yaml", "--cell", source / "hw/cells/csp6_bench.yaml",
+                    "--report", folder / "connector.html"], check=True, stdout=subprocess.DEVNULL)
 
 
 def picture(page, title):
@@ -52,22 +58,23 @@ def same(one, other):
 
 
 def main():
-    binaries, source = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+    binaries, source, plans = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
     failed = 0
     with tempfile.TemporaryDirectory(prefix="tenon_pictures_") as name:
         folder = pathlib.Path(name)
-        make_pages(binaries, source, folder)
-        for file, (page, title) in PICTURES.items():
+        make_pages(binaries, source, plans, folder)
+        for file, (document, page, title) in PICTURES.items():
             made = picture((folder / page).read_text(), title)
             kept = source / file
             if "--write" in sys.argv:
                 kept.write_text(made)
             good = kept.exists() and same(made, kept.read_text()) and len(made) < BYTES_MAX
-            shown = re.search(rf"!\[[^\]]+\]\(pictures/{kept.name}\)", (source / HOWTO).read_text())
+            link = re.escape(str(kept.relative_to((source / document).parent)))
+            shown = re.search(rf"!\[[^\]]+\]\({link}\)", (source / document).read_text())
             failed += not (good and shown)
             print(f"{'' if good and shown else 'FAILED: '}{file}: {len(made)} bytes, "
                   f"{'as the programs draw it' if good else 'is another one, or too large'}"
-                  f"{'' if shown else '; not in the how-to'}")
+                  f"{'' if shown else f'; not in {document}'}")
     return 1 if failed else 0
 
 

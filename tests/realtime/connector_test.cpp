@@ -1,5 +1,5 @@
-// A part of triangles in real time: six axes plug a connector in, with half a millimetre to each
-// side. Nothing here depends on how fast the machine is: a run that ended
+// The demo's part in real time: six axes plug a connector in, of triangles and with half a
+// millimetre to each side. Nothing here depends on how fast the machine is: a run that ended
 // because it came too late too often is repeated.
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 
 #include "tests/support/busy_machine.h"
 #include "tests/support/child_process.h"
+#include "tests/support/commands.h"
 #include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/sim_process.h"
@@ -40,6 +41,27 @@ TEST(Connector, IsPluggedInBySixAxesInRealTime) {
   EXPECT_EQ(nlohmann::json::parse(folder.get("result.json")).at("reason"), "plan_done");
   EXPECT_EQ(nlohmann::json::parse(folder.get("truth.json")).at("within_tolerance"), true);
   EXPECT_EQ(nlohmann::json::parse(folder.get("truth.json")).at("solver_messages"), 0);
+}
+
+// demo.sh as it is typed, but for the build.
+TEST(Demo, PlansAndPlugsTheConnectorInWithoutAnyOption) {
+  const ScratchFolder folder;
+  const std::string output = folder.path() / "demo";
+  const auto bin = std::filesystem::path(executable("tenon-plan")).parent_path();
+  Ended ended;
+  Attempts attempts;
+  do {
+    ended = run(folder, {in_tree("demo.sh"), "--bin", bin, "--output", output},
+                std::chrono::minutes(20));
+  } while (ended.status == 1 &&
+           attempts.again(nlohmann::json::parse(folder.get("demo/result.json"))));
+  ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
+  EXPECT_NE(ended.out.find("== Plan: connector,"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("done: plan 'connector' done"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("from its goal, within the tolerance"), std::string::npos) << ended.out;
+  for (const char* page : {"demo/plan.html", "demo/run.html"}) {
+    EXPECT_NE(folder.get(page).find("connector"), std::string::npos) << page;
+  }
 }
 
 }  // namespace
