@@ -218,21 +218,19 @@ class Planning {
       });
       tell(way ? guide_followed(guide, way->size()) : guide_left(guide, left));
       if (!way) return false;
-      Judgement judgement = judge_.judge(*way);
+      Judgement judgement = judge_.judge(*way, PathJudge::Misses::kAll);
       if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
         report_.guide = guide_text(guide);
         keep(std::move(*judged), *way, SearchResult{});
         return true;
       }
       const auto& refutation = std::get<Refutation>(judgement);
-      const bool fresh = searched_->add(refutation.chain.start);
-      const bool truer = !fresh && succ != &true_succ_ && options_.search_physics != nullptr;
-      report_.refusals.push_back(refutation.why + (fresh   ? "; it becomes a particle"
-                                                   : truer ? "; followed by the true physics"
-                                                           : "; the guide is left"));
+      const std::size_t fresh = searched_->add_starts(refutation);
+      const bool truer = fresh == 0 && succ != &true_succ_ && options_.search_physics != nullptr;
+      report_.refusals.push_back(refutation.why + way_refuted(fresh, truer));
       tell("refuted: " + report_.refusals.back());
       if (truer) succ = &true_succ_;
-      if (!fresh && !truer) return false;
+      if (fresh == 0 && !truer) return false;
     }
     return false;
   }

@@ -8,6 +8,8 @@ namespace {
 
 // A chain that stays this close to the search's particles has done as they did.
 constexpr double kForeseen_m = 1e-4;
+// Every particle is simulated in every move.
+constexpr std::size_t kOthersMax = 8;
 
 bool same_start(const Particle& a, const Particle& b) {
   return a.pose == b.pose && a.environment == b.environment && a.physics == b.physics;
@@ -36,6 +38,14 @@ bool SearchedGraph::add(const Particle& start) {
   states_before_ += graph_->size();
   graph_.emplace(task_, belief_, attractors_, succ_);
   return true;
+}
+
+std::size_t SearchedGraph::add_starts(const Refutation& refutation) {
+  const std::vector<Particle>& others = refutation.others;
+  const std::size_t some = std::min(others.size(), kOthersMax);
+  std::size_t added = add(refutation.chain.start) ? 1 : 0;
+  for (std::size_t i = 0; i < some; ++i) added += add(others[i * others.size() / some]) ? 1 : 0;
+  return added;
 }
 
 std::vector<Particle>::const_iterator SearchedGraph::known(const Particle& start) const {

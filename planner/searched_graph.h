@@ -32,6 +32,9 @@ class SearchedGraph {
   [[nodiscard]] const Belief& start() const { return belief_; }
   /// Makes a start a particle: graph() begins anew. @return false where it is one already
   bool add(const Particle& start);
+  /// Likewise the start of a refutation's chain and, evenly among its others, up to eight: what is
+  /// made anew for these holds for most of those between them. @return how many are new
+  std::size_t add_starts(const Refutation& refutation);
 
   /// A chain from a start that the search did not know of makes that start a particle: graph()
   /// begins anew. Otherwise the search was wrong about a move, and does without it.

@@ -92,6 +92,12 @@ std::string path_found(const SearchResult& search) {
                 search.expanded.size());
 }
 
+std::string way_refuted(std::size_t starts, bool truer) {
+  if (starts > 1) return format("; %zu starts that missed become particles", starts);
+  if (starts == 1) return "; it becomes a particle";
+  return truer ? "; followed by the true physics" : "; the guide is left";
+}
+
 std::string lesson(const Refutation& refutation, std::optional<std::size_t> refused_step) {
   return refutation.why + (refused_step ? format("; its move in step %zu is refused", *refused_step)
                                         : "; it becomes a particle");

@@ -38,6 +38,10 @@ struct SearchLimits {
 [[nodiscard]] std::string guide_followed(const Guide& guide, std::size_t moves);
 [[nodiscard]] std::string path_found(const SearchResult& search);
 
+/// What follows for the next way that a guide leads from what refuted the last one.
+/// @param starts that have become particles  @param truer whether the true physics is gone by then
+[[nodiscard]] std::string way_refuted(std::size_t starts, bool truer);
+
 /// What refuted a path, and what was learnt from it.
 /// @param refused_step whose move the search does without; empty where the start became a particle
 [[nodiscard]] std::string lesson(const Refutation& refutation,

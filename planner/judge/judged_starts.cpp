@@ -113,6 +113,21 @@ std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task, const
   return starts_at(task.particle_sigmas, corners(plan, task), task, start, rollout);
 }
 
+std::vector<JudgedStart> screening_starts(const Plan& plan, const Task& task, const Start& start,
+                                          Rollout& rollout) {
+  const std::vector<PhysicalParameters> physics = corners(plan, task);
+  const std::size_t each = physics.size();
+  const std::vector<JudgedStart> all =
+      starts_at(task.particle_sigmas, physics, task, start, rollout);
+  std::vector<JudgedStart> some;
+  for (std::size_t i = 0; i < all.size() / each; ++i) {
+    // No side of a coordinate goes with a parameter.
+    const std::size_t turn = (i + i / each + i / (each * each)) % each;
+    some.push_back(all[i * each + turn]);
+  }
+  return some;
+}
+
 std::vector<JudgedStart> rim_starts(const Plan& plan, const Task& task, const Start& start,
                                     Rollout& rollout) {
   if (drawn_sigmas(task) <= task.particle_sigmas) return {};

@@ -34,8 +34,13 @@ enum class DrawnPhysics : std::uint8_t {
 [[nodiscard]] std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task,
                                                      const Start& start, Rollout& rollout);
 
-/// Likewise where drawing ends, one standard deviation farther, with the largest part; none where
-/// errors are uniform.
+/// A look at all of these starts: each at one of the corners of friction, size and latency, in
+/// turn.
+[[nodiscard]] std::vector<JudgedStart> screening_starts(const Plan& plan, const Task& task,
+                                                        const Start& start, Rollout& rollout);
+
+/// As corner_starts() where drawing ends, one standard deviation farther, with the largest part;
+/// none where errors are uniform.
 [[nodiscard]] std::vector<JudgedStart> rim_starts(const Plan& plan, const Task& task,
                                                   const Start& start, Rollout& rollout);
 

@@ -34,10 +34,19 @@ PathJudge::PathJudge(const Task& task, const Start& start, const Parameters& par
                      RolloutPool& pool, ClockSeconds now_s)
     : task_(task), start_(start), parameters_(parameters), pool_(pool), now_s_(std::move(now_s)) {}
 
-Judgement PathJudge::judge(std::span<const Vector6> displacements) {
+Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses) {
   missed_.clear();
+  misses_ = misses;
   Plan slow = draft_plan(task_, start_, parameters_.assumptions, displacements);
   slow.method = parameters_.method;
+  if (misses == Misses::kAll) {
+    const std::vector<Draw> looked =
+        run(slow, screening_starts(slow, task_, start_, pool_.front()));
+    if (const auto miss = missed(looked)) return *miss;
+    Judgement judgement = at_once(slow, good_chains(looked));
+    if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
+    if (auto again = misses_again(slow)) return *std::move(again);
+  }
   Certification at_contact_speed = certified(slow);
   if (!at_contact_speed.holds()) return refutation_of(at_contact_speed);
   if (slow.method != PlanMethod::kMha) {
@@ -55,6 +64,20 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements) {
   }
   // As it was searched.
   return at_any_speed({std::move(slow), std::move(at_contact_speed)});
+}
+
+Judgement PathJudge::at_once(const Plan& slow, std::span<const Chain> chains) {
+  const Plan plain = with_plain_touches(slow, chains).value_or(slow);
+  std::vector<double> distances_m = slow_from(plain, chains, task_.particle_sigmas);
+  Judgement judgement = Refutation{};
+  for (int attempt = 0; attempt < kSpeedAttempts; ++attempt) {
+    Plan plan = with_slow_from(plain, distances_m);
+    if (auto centred = with_last_move_centred(plan, chains, task_)) plan = *std::move(centred);
+    Certification certification = certified(plan);
+    judgement = at_speeds({std::move(plan), std::move(certification)}, distances_m);
+    if (std::holds_alternative<JudgedPlan>(judgement) || !any_fast(distances_m)) break;
+  }
+  return judgement;
 }
 
 Judgement PathJudge::at_any_speed(Candidate slow) {
@@ -156,7 +179,8 @@ Certification PathJudge::certified(const Plan& plan) {
 }
 
 std::vector<Draw> PathJudge::corners_of(const Plan& plan) {
-  return run_to_miss(plan, corner_starts(plan, task_, start_, pool_.front()));
+  const auto starts = corner_starts(plan, task_, start_, pool_.front());
+  return misses_ == Misses::kAll ? run(plan, starts) : run_to_miss(plan, starts);
 }
 
 std::vector<Draw> PathJudge::rim_of(const Plan& plan) {
@@ -172,14 +196,23 @@ std::optional<Refutation> PathJudge::misses_again(const Plan& plan) {
   const std::vector<Draw> draws = run_to_miss(plan, missed_);
   const Draw* miss = missed_draw(draws, task_.particle_sigmas);
   if (miss == nullptr) return std::nullopt;
-  return refutation_of(*miss, task_);
+  return with_others(refutation_of(*miss, task_));
 }
 
 std::optional<Refutation> PathJudge::missed(std::span<const Draw> draws) {
   const Draw* miss = missed_draw(draws, task_.particle_sigmas);
   if (miss == nullptr) return std::nullopt;
-  missed_.push_back({miss->chain.start, miss->sigmas_out});
-  return refutation_of(*miss, task_);
+  for (const Draw& draw : draws) {
+    if (!missed_draw({&draw, 1}, task_.particle_sigmas)) continue;
+    missed_.push_back({draw.chain.start, draw.sigmas_out});
+  }
+  return with_others(refutation_of(*miss, task_));
+}
+
+Refutation PathJudge::with_others(Refutation refutation) const {
+  if (misses_ == Misses::kFirst) return refutation;
+  for (const JudgedStart& start : missed_) refutation.others.push_back(start.particle);
+  return refutation;
 }
 
 std::vector<Draw> PathJudge::run_to_miss(const Plan& plan, std::span<const JudgedStart> starts) {

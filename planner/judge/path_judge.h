@@ -59,9 +59,16 @@ class PathJudge {
   PathJudge(const Task& task, const Start& start, const Parameters& parameters, RolloutPool& pool,
             ClockSeconds now_s);
 
+  /// What of the starts at the corners a refutation tells.
+  enum class Misses : std::uint8_t {
+    kFirst,  ///< the first that misses the goal
+    kAll,    ///< every one that does; a look at some of them comes before all else
+  };
+
   /// @param displacements of the path's steps, values that a plan file can hold
   /// @throws InputError where they cannot be represented as a plan
-  [[nodiscard]] Judgement judge(std::span<const Vector6> displacements);
+  [[nodiscard]] Judgement judge(std::span<const Vector6> displacements,
+                                Misses misses = Misses::kFirst);
 
   [[nodiscard]] const JudgeEffort& effort() const { return effort_; }
 
@@ -79,6 +86,8 @@ class PathJudge {
 
   /// Certified, and if it holds with its last move centred, where that holds as well.
   [[nodiscard]] Candidate centred(Plan plan, Certification certification);
+  /// Plain, fast and centred by what chains at contact speed show, and certified as that alone.
+  [[nodiscard]] Judgement at_once(const Plan& slow, std::span<const Chain> chains);
   /// As fast as it holds, else at contact speed. @param slow certified at contact speed
   [[nodiscard]] Judgement at_any_speed(Candidate slow);
   /// Where the plan does not hold at its speeds, the distances are lowered, to be tried next. At
@@ -93,12 +102,14 @@ class PathJudge {
                                     const Extremes& extremes);
   /// Where a start that this path has missed at other speeds or otherwise pressed, misses again.
   [[nodiscard]] std::optional<Refutation> misses_again(const Plan& plan);
-  /// Of draws that may refute: the first miss, which is remembered.
+  /// Of draws that may refute: the first miss. All are remembered.
   [[nodiscard]] std::optional<Refutation> missed(std::span<const Draw> draws);
+  /// And all that this path has missed, where those are asked for.
+  [[nodiscard]] Refutation with_others(Refutation refutation) const;
   [[nodiscard]] Certification certified(const Plan& plan);
   [[nodiscard]] std::vector<Draw> rim_of(const Plan& plan);
-  /// These and the draws may refute, and end with the first miss; of the draws every second one is
-  /// at a corner of friction and size.
+  /// These and the draws may refute, and end with the first miss unless all are asked for; of the
+  /// draws every second one is at a corner of friction and size.
   [[nodiscard]] std::vector<Draw> corners_of(const Plan& plan);
   [[nodiscard]] std::vector<Draw> drawn(const Plan& plan, std::uint64_t seed);
   [[nodiscard]] std::vector<Draw> run(const Plan& plan, std::span<const JudgedStart> starts,
@@ -112,6 +123,7 @@ class PathJudge {
   RolloutPool& pool_;
   ClockSeconds now_s_;
   JudgeEffort effort_;
+  Misses misses_ = Misses::kFirst;
   std::vector<JudgedStart> missed_;  ///< by the path that is judged
 };
 

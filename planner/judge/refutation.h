@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "planner/judge/certification.h"
 #include "planner/judge/chain.h"
@@ -15,6 +16,7 @@ struct Refutation {
   Chain chain;
   std::optional<std::size_t> step;  ///< at which the chain went wrong, where that is known
   std::string why;                  ///< one line
+  std::vector<Particle> others{};   ///< starts that the path has missed, the chain's among them
 };
 
 /// The earliest disagreement. @param certification one that does not hold

@@ -74,10 +74,14 @@ class Walk {
     return stuck("the part does not go in");
   }
 
+  /// What would be uncertain at the goal.
+  [[nodiscard]] double left_m2() const {
+    return summarise(moved_to(task_.goal, belief_, task_), task_).uncertainty_m2;
+  }
+
   /// Over the goal along the longest way there first. @return whether one of them leads in
   bool arrive() {
-    const BeliefSummary there = summarise(moved_to(task_.goal, belief_, task_), task_);
-    if (turned() && there.uncertainty_m2 > kNearlyCertain * task_.goal_uncertainty_m2) {
+    if (turned() && left_m2() > kNearlyCertain * task_.goal_uncertainty_m2) {
       return stuck("more is uncertain than the goal takes");
     }
     const Mark touched = mark();
@@ -96,13 +100,13 @@ class Walk {
   /// For a second try.
   struct Mark {
     Belief belief;
-    std::size_t moves = 0;
+    std::vector<Vector6> moves;
     std::vector<Pose> waypoints;
   };
-  [[nodiscard]] Mark mark() const { return {belief_, moves_.size(), waypoints_}; }
+  [[nodiscard]] Mark mark() const { return {belief_, moves_, waypoints_}; }
   void return_to(const Mark& mark) {
     belief_ = mark.belief;
-    moves_.resize(mark.moves);
+    moves_ = mark.moves;
     waypoints_ = mark.waypoints;
   }
 
@@ -177,6 +181,28 @@ class Walk {
   std::string why_;
 };
 
+/// What was met while another coordinate was uncertain tells more when it is met once more: of all
+/// touches each time the one that leads to the goal, else the one that leaves the least uncertain.
+bool touched_again(Walk& walk, const Guide& guide) {
+  for (std::size_t round = 0; round < guide.contacts.size(); ++round) {
+    const Walk::Mark before = walk.mark();
+    std::optional<Walk::Mark> best;
+    double least_m2 = walk.left_m2();
+    for (const ContactAttractor& contact : guide.contacts) {
+      walk.return_to(before);
+      if (!walk.touch(contact)) continue;
+      if (walk.left_m2() < least_m2) {
+        least_m2 = walk.left_m2();
+        best = walk.mark();
+      }
+      if (walk.arrive()) return true;
+    }
+    if (!best) return false;
+    walk.return_to(*best);
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<std::vector<Vector6>> follow_guide(const Guide& guide, const Task& task,
@@ -189,14 +215,18 @@ std::optional<std::vector<Vector6>> follow_guide(const Guide& guide, const Task&
     if (left != nullptr) *left = where + ": " + walk.why();
     return std::nullopt;
   };
-  for (const bool again : {false, true}) {
+  for (std::size_t i = 0; i < guide.contacts.size(); ++i) {
+    if (!turned && is_behind(walk.here(), guide.contacts[i], task)) continue;
+    if (!walk.touch(guide.contacts[i])) return leave("its touch " + std::to_string(i + 1));
+  }
+  if (walk.arrive()) return walk.take();
+  if (turned) {
+    if (touched_again(walk, guide)) return walk.take();
+  } else {
     for (std::size_t i = 0; i < guide.contacts.size(); ++i) {
-      const ContactAttractor& contact = guide.contacts[i];
-      if (!again && !turned && is_behind(walk.here(), contact, task)) continue;
-      if (!walk.touch(contact)) {
-        return leave("its touch " + std::to_string(i + 1) + (again ? ", made again" : ""));
+      if (!walk.touch(guide.contacts[i])) {
+        return leave("its touch " + std::to_string(i + 1) + ", made again");
       }
-      if (again && turned && walk.arrive()) return walk.take();
     }
     if (walk.arrive()) return walk.take();
   }

@@ -13,6 +13,8 @@ namespace {
 
 // How far off a face the nearest particle begins to push.
 constexpr double kFromFace_m = 5e-3;
+// In steps of this it is looked for where the part meets a side.
+constexpr double kStride_m = 0.5e-3;
 // What the middle of the part keeps to a flat side's rim besides what is uncertain.
 constexpr double kToRim_m = 1e-3;
 constexpr std::size_t kTurnsMax = 7;
@@ -186,15 +188,31 @@ Vector6 TouchTurns::spread_at(const Pose& place, const Turn& turn) const {
   return summarise(there, task_).spread;
 }
 
+/// What of the part comes first need not be what meets the side: a flange may pass above it.
+std::optional<Pose> TouchTurns::met_at(const TouchPlace& side, int axis, int sign) {
+  const double ahead_m = sign > 0 ? part_.max()[axis] : -part_.min()[axis];
+  Pose at{side.at_m, task_.goal.orientation};
+  at.position_m[axis] -= sign * (ahead_m + kStride_m);
+  if (rollout_.in_collision(at)) return std::nullopt;
+  for (double gone_m = 0.0; gone_m < ahead_m + 2.0 * kStride_m; gone_m += kStride_m) {
+    Pose further = at;
+    further.position_m[axis] += sign * kStride_m;
+    if (rollout_.in_collision(further)) return at;
+    at = further;
+  }
+  return std::nullopt;
+}
+
 /// With the tool's origin over the place, from where all of the spread is off the side.
 bool TouchTurns::push(const Turn& turn, const TouchPlace& side, int axis, int sign,
                       std::vector<Turn>& next) {
   const BeliefSummary from = summarise(turn.belief, task_);
-  const double ahead_m = sign > 0 ? part_.max()[axis] : -part_.min()[axis];
-  Pose via{side.at_m, task_.goal.orientation};
+  const auto met = met_at(side, axis, sign);
+  if (!met) return false;
+  Pose via = *met;
   const Vector6 spread = spread_at(via, turn);
   const double spread_m = spread[axis] + turned_aside_m(spread, part_)[axis];
-  via.position_m[axis] -= sign * (ahead_m + spread_m + kFromFace_m);
+  via.position_m[axis] -= sign * (spread_m + kFromFace_m);
   const Belief before = moved_to(via, turn.belief, task_);
   const bool collides =
       std::any_of(before.particles.begin(), before.particles.end(),

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "planner/belief/belief_summary.h"
@@ -50,6 +51,8 @@ class TouchTurns {
   void touch_sides(const Turn& turn, const Shape& shape, int axis, int sign,
                    std::vector<Turn>& next);
   [[nodiscard]] Vector6 spread_at(const Pose& place, const Turn& turn) const;
+  /// The last free place on the way to a side. Empty where the way is not free, or nothing is met.
+  [[nodiscard]] std::optional<Pose> met_at(const TouchPlace& side, int axis, int sign);
   bool push(const Turn& turn, const TouchPlace& side, int axis, int sign, std::vector<Turn>& next);
   [[nodiscard]] std::vector<Turn> best_of(std::vector<Turn> turns);
   [[nodiscard]] bool in_legs(const Turn& turn);

@@ -178,6 +178,73 @@ TEST(FollowGuide, TouchesWhatItNamesAndEndsAtTheGoal) {
   }
 }
 
+/// The room with a wall across y that leans along x.
+class LeaningRoom final : public Rollout {
+ public:
+  static constexpr double kSlope = 0.2;
+
+  [[nodiscard]] RolloutResult simulate(const Particle& particle, const MoveParameters& move,
+                                       std::int64_t step_us,
+                                       std::vector<TraceSample>* trace) override {
+    Particle upright = particle;
+    upright.pose.position_m.y() -= kSlope * particle.pose.position_m.x();
+    MoveParameters along = move;
+    along.displacement[1] -= kSlope * move.displacement[0];
+    RolloutResult result = walls_.simulate(upright, along, step_us, trace);
+    Pose& end = result.move.pose;
+    end.position_m.y() += kSlope * end.position_m.x();
+    result.move.travelled = displacement_between(particle.pose, end);
+    return result;
+  }
+  [[nodiscard]] bool in_collision(const Pose& tool) override {
+    Pose upright = tool;
+    upright.position_m.y() -= kSlope * tool.position_m.x();
+    return walls_.in_collision(upright);
+  }
+  [[nodiscard]] std::unique_ptr<Rollout> clone() const override {
+    return std::make_unique<LeaningRoom>();
+  }
+
+ private:
+  WallRollout walls_{room()};
+};
+
+// The wall that leans was met before x was known, and the floor tells nothing new.
+TEST(FollowGuide, MakesNoTouchAgainThatTellsNothingNew) {
+  Task task = own_room_task();
+  task.coordinates = 0b111;
+  task.compliance.compliant_axes = 0b111;
+  task.motion.carried_axes = true;
+  task.starts.front().sigma[2] = 0.03;
+  derive_moves(task);
+  LeaningRoom rollout;
+  RolloutPool pool(rollout, 1);
+  const Start& from = task.starts.front();
+  SuccessorEngine succ(pool, search_move(task, from, {}), task.rollout_step_us,
+                       SuccessorEngine::Edges::kTaken);
+  const Guide guide{{wall(2, -1, -1.0), wall(1, -1, -0.4), wall(0, -1, -0.5)}, {task.goal}, 1.0};
+  std::string left;
+  const auto way =
+      follow_guide(guide, task, cross_polytope(task, from), from.pose, succ, pool.front(), &left);
+  ASSERT_TRUE(way) << left;
+  for (Particle particle : cross_polytope(task, from).particles) {
+    int touches = 0;
+    int floor = 0;
+    for (const Vector6& displacement : *way) {
+      MoveParameters move;
+      move.displacement = displacement;
+      const RolloutResult result = rollout.simulate(particle, move, 2000, nullptr);
+      touches += result.move.outcome == Outcome::kContact;
+      floor += result.move.signature.sign(2) != 0 && displacement.z() != 0.0;
+      particle.pose = result.move.pose;
+      particle.signature = result.move.signature;
+    }
+    EXPECT_EQ(touches, 4);
+    EXPECT_EQ(floor, 1);
+    EXPECT_LT((particle.tool().position_m - task.goal.position_m).norm(), 1e-6);
+  }
+}
+
 TEST(FollowGuide, SaysSoWhereItDoesNotLeadToTheGoal) {
   FollowedRoom room(own_room_task());
   // y stays as uncertain as it was.

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -13,15 +15,18 @@
 namespace tenon::planner {
 namespace {
 
-/// The room, in which nothing works from one place.
+/// The room, in which nothing works from some places.
 class HoledRollout final : public Rollout {
  public:
-  explicit HoledRollout(const Vector3& hole_m) : hole_m_(hole_m), walls_(room()) {}
+  explicit HoledRollout(std::vector<Vector3> holes_m)
+      : holes_m_(std::move(holes_m)), walls_(room()) {}
 
   [[nodiscard]] RolloutResult simulate(const Particle& particle, const MoveParameters& move,
                                        std::int64_t step_us,
                                        std::vector<TraceSample>* trace) override {
-    const bool in_hole = (particle.pose.position_m - hole_m_).norm() < 1e-9;
+    const bool in_hole = std::any_of(holes_m_.begin(), holes_m_.end(), [&](const Vector3& hole_m) {
+      return (particle.pose.position_m - hole_m).norm() < 1e-9;
+    });
     if (!in_hole) return walls_.simulate(particle, move, step_us, trace);
     RolloutResult result;
     result.failure = "it fell into the hole";
@@ -29,13 +34,19 @@ class HoledRollout final : public Rollout {
   }
   [[nodiscard]] bool in_collision(const Pose& tool) override { return walls_.in_collision(tool); }
   [[nodiscard]] std::unique_ptr<Rollout> clone() const override {
-    return std::make_unique<HoledRollout>(hole_m_);
+    return std::make_unique<HoledRollout>(holes_m_);
   }
 
  private:
-  Vector3 hole_m_;
+  std::vector<Vector3> holes_m_;
   WallRollout walls_;
 };
+
+std::vector<Vector6> path_of(const Plan& plan) {
+  std::vector<Vector6> displacements;
+  for (const Step& step : plan.steps) displacements.push_back(step.displacement);
+  return displacements;
+}
 
 // In the last corner, where certification has no particle: both errors are off.
 TEST(PathJudge, AStartThatAPathHasMissedIsRunFirstThroughItsVariants) {
@@ -43,12 +54,11 @@ TEST(PathJudge, AStartThatAPathHasMissedIsRunFirstThroughItsVariants) {
   const Start& start = task.starts.front();
   const PlanReport report = planned(task);
   ASSERT_TRUE(report.plan);
-  std::vector<Vector6> displacements;
-  for (const Step& step : report.plan->steps) displacements.push_back(step.displacement);
+  const std::vector<Vector6> displacements = path_of(*report.plan);
   WallRollout walls(room());
   const std::vector<JudgedStart> corners = corner_starts(*report.plan, task, start, walls);
 
-  RolloutPool pool(HoledRollout(corners.back().particle.pose.position_m), 1);
+  RolloutPool pool(HoledRollout({corners.back().particle.pose.position_m}), 1);
   PathJudge judge(task, start, {}, pool, stopped_clock);
   const Judgement judgement = judge.judge(displacements);
   ASSERT_TRUE(std::holds_alternative<Refutation>(judgement));
@@ -58,6 +68,51 @@ TEST(PathJudge, AStartThatAPathHasMissedIsRunFirstThroughItsVariants) {
   const std::uint64_t moves = judge.effort().validation_moves;
   EXPECT_GT(moves, (corners.size() / 2) * displacements.size());
   EXPECT_LE(moves, corners.size() * displacements.size());
+}
+
+// Whoever makes the way anew needs them all, and soon.
+TEST(PathJudge, EveryCornerThatMissesIsToldBeforeAnythingElseIsAsked) {
+  const Task task = room_task();
+  const Start& start = task.starts.front();
+  const PlanReport report = planned(task);
+  ASSERT_TRUE(report.plan);
+  const std::vector<Vector6> displacements = path_of(*report.plan);
+  WallRollout walls(room());
+  const std::vector<JudgedStart> looked = screening_starts(*report.plan, task, start, walls);
+  const std::vector<Vector3> holes_m = {looked[4].particle.pose.position_m,
+                                        looked.back().particle.pose.position_m};
+
+  RolloutPool pool(HoledRollout(holes_m), 1);
+  PathJudge judge(task, start, {}, pool, stopped_clock);
+  const Judgement judgement = judge.judge(displacements, PathJudge::Misses::kAll);
+  ASSERT_TRUE(std::holds_alternative<Refutation>(judgement));
+  std::vector<Vector3> told_m;
+  for (const Particle& other : std::get<Refutation>(judgement).others) {
+    told_m.push_back(other.pose.position_m);
+  }
+  EXPECT_EQ(told_m, holes_m);
+  EXPECT_EQ(judge.effort().certification_moves, 0U);
+  EXPECT_LE(judge.effort().validation_moves, looked.size() * displacements.size());
+}
+
+TEST(PathJudge, AsksWhatHoldsNoMoreOftenForHavingLookedAtAllCorners) {
+  const Task task = room_task();
+  const Start& start = task.starts.front();
+  const PlanReport report = planned(task);
+  ASSERT_TRUE(report.plan);
+  const std::vector<Vector6> displacements = path_of(*report.plan);
+  RolloutPool pool(WallRollout(room()), 1);
+  PathJudge searched(task, start, {}, pool, stopped_clock);
+  PathJudge followed(task, start, {}, pool, stopped_clock);
+  const Judgement one = searched.judge(displacements);
+  const Judgement other = followed.judge(displacements, PathJudge::Misses::kAll);
+  ASSERT_TRUE(std::holds_alternative<JudgedPlan>(one));
+  ASSERT_TRUE(std::holds_alternative<JudgedPlan>(other));
+  EXPECT_EQ(std::get<JudgedPlan>(other).estimate.at_goal(), kDrawsMin);
+  const auto moves = [](const PathJudge& judge) {
+    return judge.effort().certification_moves + judge.effort().validation_moves;
+  };
+  EXPECT_LT(moves(followed), moves(searched) + 8 * displacements.size());
 }
 
 }  // namespace

@@ -85,6 +85,38 @@ TEST(Validation, CornersStandOnTheRimOfTheReachWithEveryExtremeOfPhysics) {
   EXPECT_EQ(physics, expected);
 }
 
+TEST(Validation, ALookAtTheCornersHasEachOfThemOnceAndEveryPhysicsOnEverySide) {
+  Task task = room_task();
+  task.coordinates = 0b111111;
+  task.guide_moves = true;
+  task.starts.front().sigma << 0.03, 0.03, 0.03, 0.02, 0.02, 0.02;
+  Plan plan;
+  plan.latency_max_s = 0.008;
+  WallRollout rollout(room());
+  const Start& start = task.starts.front();
+  const auto all = corner_starts(plan, task, start, rollout);
+  const auto looked = screening_starts(plan, task, start, rollout);
+  ASSERT_EQ(looked.size(), 76U);
+  ASSERT_EQ(all.size(), 4 * looked.size());
+  const auto physics_of = [](const JudgedStart& one) {
+    return std::array{one.particle.physics.friction, one.particle.physics.latency_s};
+  };
+  for (std::size_t i = 0; i < looked.size(); ++i) {
+    EXPECT_EQ(looked[i].particle.pose, all[4 * i].particle.pose);
+    EXPECT_EQ(looked[i].particle.environment, all[4 * i].particle.environment);
+  }
+  for (int axis = 0; axis < 6; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      std::set<std::array<double, 2>> physics;
+      for (const JudgedStart& one : looked) {
+        const Vector6 off = displacement_between(start.pose, one.particle.tool());
+        if (side * off[axis] > 1e-6) physics.insert(physics_of(one));
+      }
+      EXPECT_EQ(physics.size(), 4U) << axis << " " << side;
+    }
+  }
+}
+
 TEST(Validation, APlanIsJudgedByDrawsThatItsOwnBytesChoose) {
   const Task task = room_task();
   const Plan plan = *planned_by(20, task).plan;
