@@ -42,49 +42,52 @@ class HoledRollout final : public Rollout {
   WallRollout walls_;
 };
 
-std::vector<Vector6> path_of(const Plan& plan) {
-  std::vector<Vector6> displacements;
-  for (const Step& step : plan.steps) displacements.push_back(step.displacement);
-  return displacements;
-}
+/// The room's task with its plan's path.
+class PathJudgeTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const PlanReport report = planned(task);
+    ASSERT_TRUE(report.plan);
+    plan = *report.plan;
+    for (const Step& step : plan.steps) path.push_back(step.displacement);
+  }
 
-// In the last corner, where certification has no particle: both errors are off.
-TEST(PathJudge, AStartThatAPathHasMissedIsRunFirstThroughItsVariants) {
+  [[nodiscard]] PathJudge judge_in(RolloutPool& pool) const {
+    return {task, start, {}, pool, stopped_clock};
+  }
+
   const Task task = room_task();
   const Start& start = task.starts.front();
-  const PlanReport report = planned(task);
-  ASSERT_TRUE(report.plan);
-  const std::vector<Vector6> displacements = path_of(*report.plan);
-  WallRollout walls(room());
-  const std::vector<JudgedStart> corners = corner_starts(*report.plan, task, start, walls);
+  WallRollout walls{room()};
+  Plan plan;
+  std::vector<Vector6> path;
+};
+
+// In the last corner, where certification has no particle: both errors are off.
+TEST_F(PathJudgeTest, AStartThatAPathHasMissedIsRunFirstThroughItsVariants) {
+  const std::vector<JudgedStart> corners = corner_starts(plan, task, start, walls);
 
   RolloutPool pool(HoledRollout({corners.back().particle.pose.position_m}), 1);
-  PathJudge judge(task, start, {}, pool, stopped_clock);
-  const Judgement judgement = judge.judge(displacements);
+  PathJudge judge = judge_in(pool);
+  const Judgement judgement = judge.judge(path);
   ASSERT_TRUE(std::holds_alternative<Refutation>(judgement));
   const Refutation& refutation = std::get<Refutation>(judgement);
   EXPECT_NE(refutation.why.find("missed the goal"), std::string::npos) << refutation.why;
   // The fast plan has run all the corners, the slow one that one alone.
   const std::uint64_t moves = judge.effort().validation_moves;
-  EXPECT_GT(moves, (corners.size() / 2) * displacements.size());
-  EXPECT_LE(moves, corners.size() * displacements.size());
+  EXPECT_GT(moves, (corners.size() / 2) * path.size());
+  EXPECT_LE(moves, corners.size() * path.size());
 }
 
 // Whoever makes the way anew needs them all, and soon.
-TEST(PathJudge, EveryCornerThatMissesIsToldBeforeAnythingElseIsAsked) {
-  const Task task = room_task();
-  const Start& start = task.starts.front();
-  const PlanReport report = planned(task);
-  ASSERT_TRUE(report.plan);
-  const std::vector<Vector6> displacements = path_of(*report.plan);
-  WallRollout walls(room());
-  const std::vector<JudgedStart> looked = screening_starts(*report.plan, task, start, walls);
+TEST_F(PathJudgeTest, EveryCornerThatMissesIsToldBeforeAnythingElseIsAsked) {
+  const std::vector<JudgedStart> looked = screening_starts(plan, task, start, walls);
   const std::vector<Vector3> holes_m = {looked[4].particle.pose.position_m,
                                         looked.back().particle.pose.position_m};
 
   RolloutPool pool(HoledRollout(holes_m), 1);
-  PathJudge judge(task, start, {}, pool, stopped_clock);
-  const Judgement judgement = judge.judge(displacements, PathJudge::Misses::kAll);
+  PathJudge judge = judge_in(pool);
+  const Judgement judgement = judge.judge(path, PathJudge::Misses::kAll);
   ASSERT_TRUE(std::holds_alternative<Refutation>(judgement));
   std::vector<Vector3> told_m;
   for (const Particle& other : std::get<Refutation>(judgement).others) {
@@ -92,27 +95,22 @@ TEST(PathJudge, EveryCornerThatMissesIsToldBeforeAnythingElseIsAsked) {
   }
   EXPECT_EQ(told_m, holes_m);
   EXPECT_EQ(judge.effort().certification_moves, 0U);
-  EXPECT_LE(judge.effort().validation_moves, looked.size() * displacements.size());
+  EXPECT_LE(judge.effort().validation_moves, looked.size() * path.size());
 }
 
-TEST(PathJudge, AsksWhatHoldsNoMoreOftenForHavingLookedAtAllCorners) {
-  const Task task = room_task();
-  const Start& start = task.starts.front();
-  const PlanReport report = planned(task);
-  ASSERT_TRUE(report.plan);
-  const std::vector<Vector6> displacements = path_of(*report.plan);
+TEST_F(PathJudgeTest, AsksWhatHoldsNoMoreOftenForHavingLookedAtAllCorners) {
   RolloutPool pool(WallRollout(room()), 1);
-  PathJudge searched(task, start, {}, pool, stopped_clock);
-  PathJudge followed(task, start, {}, pool, stopped_clock);
-  const Judgement one = searched.judge(displacements);
-  const Judgement other = followed.judge(displacements, PathJudge::Misses::kAll);
+  PathJudge searched = judge_in(pool);
+  PathJudge followed = judge_in(pool);
+  const Judgement one = searched.judge(path);
+  const Judgement other = followed.judge(path, PathJudge::Misses::kAll);
   ASSERT_TRUE(std::holds_alternative<JudgedPlan>(one));
   ASSERT_TRUE(std::holds_alternative<JudgedPlan>(other));
   EXPECT_EQ(std::get<JudgedPlan>(other).estimate.at_goal(), kDrawsMin);
   const auto moves = [](const PathJudge& judge) {
     return judge.effort().certification_moves + judge.effort().validation_moves;
   };
-  EXPECT_LT(moves(followed), moves(searched) + 8 * displacements.size());
+  EXPECT_LT(moves(followed), moves(searched) + 8 * path.size());
 }
 
 }  // namespace
