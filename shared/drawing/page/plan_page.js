@@ -122,7 +122,9 @@ class PlanPage {
     const key = ended ? "end" : move;
     if (this.told !== key) {
       this.told = key;
-      this.heading.textContent = ended ? `All ${count} steps are done` : `Step ${move}, the last is ${count - 1}`;
+      this.heading.textContent = ended
+        ? `All ${count} steps are done`
+        : `Step ${move}, the last is ${count - 1}`;
       this.words.replaceChildren(...this.sentences(move, ended));
       for (const row of document.querySelectorAll("tr[data-step]")) {
         row.classList.toggle("current", Number(row.dataset.step) === move + 1 && !ended);

@@ -2,7 +2,7 @@
 // Its unit is the page's: moves of a plan, or seconds of a run.
 
 const SECONDS_PER_MOVE = 1.4;
-const LEAP_MS = 1000;  // at most, from one picture to the next
+const LEAP_MS = 1000; // at most, from one picture to the next
 
 // Drawn and not written: not every font has these signs.
 function iconOf(path) {
