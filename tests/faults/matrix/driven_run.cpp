@@ -90,12 +90,12 @@ std::optional<Ground::WayOn> Ground::way_on(FaultPhase phase) const {
   return best;
 }
 
-double Ground::force_most_N() const {
+double Ground::force_most_N(double blind_s) const {
   double speed_mps = 0.0;
   for (const ParameterSet& set : planned.plan.parameter_sets) {
     speed_mps = std::max({speed_mps, set.speeds.approach_mps, set.speeds.contact_mps});
   }
-  const double noticed_s = 2e-6 * cell.robot.cycle_us + cell.robot.response_lag_s;
+  const double noticed_s = blind_s + 2e-6 * cell.robot.cycle_us + cell.robot.response_lag_s;
   return cell.force_fault_N + cell.contact_stiffness_Npm * speed_mps * noticed_s;
 }
 

@@ -30,7 +30,8 @@ struct Ground {
 
   /// What a stop on force may come to: the bound, and what the stiffest contact adds at the plan's
   /// greatest speed until it is noticed and acted on.
-  [[nodiscard]] double force_most_N() const;
+  /// @param blind_s for so long nobody looks
+  [[nodiscard]] double force_most_N(double blind_s = 0.0) const;
 
   struct Moment {
     JointVector joints{};
