@@ -64,9 +64,7 @@ rm -f "$output"/{plan.tnp,plan.json,plan.html,run.html,truth.json,sim.out,run.lc
 
 echo "== Plan: $task${start:+ from start $start}, positions uncertain"
 "$bin/tenon-plan" "$task_file" ${start:+--start "$start"} --cell "$cell_file" --threads "$(nproc)" -o "$output/plan.tnp" \
-  --json "$output/plan.json"
-"$bin/tenon-inspect" "$output/plan.tnp" --task "$task_file" --cell "$cell_file" --statistics "$output/plan.json" \
-  --report "$output/plan.html" >/dev/null
+  --json "$output/plan.json" --report "$output/plan.html"
 
 echo
 echo "== Virtual arm: $cell, the environment displaced by a draw of seed $seed"

@@ -35,8 +35,6 @@ namespace {
 
 using namespace tenon;
 
-constexpr std::size_t kReportDraws = 200;
-
 struct Arguments {
   std::string plan;
   std::string json;
@@ -197,7 +195,7 @@ std::string report_of(const Arguments& a, const Plan& plan, const std::vector<st
   planner::RolloutPool pool(sim::OdeRollout(task), a.threads);
   const planner::Certification certification = planner::certify(bytes, task, pool);
   const planner::Validation validation =
-      planner::validate(plan, task, planner::start_of(plan, task), kReportDraws, pool);
+      planner::validate(plan, task, planner::start_of(plan, task), planner::kReportDraws, pool);
   if (!run) return planner::html_report(plan, task, certification, validation, story);
   const planner::ReportData data = planner::report_data(plan, task, certification, validation);
   return planner::run_report(plan, *run, &data);

@@ -14,9 +14,11 @@
 #include "executor/dry_run/cell_reach.h"
 #include "planner/cell_fit.h"
 #include "planner/check/task_check.h"
+#include "planner/goal_certainty.h"
 #include "planner/main_plan_new_task.h"
 #include "planner/planner.h"
 #include "planner/report/check_page.h"
+#include "planner/report/html_report.h"
 #include "planner/report/statistics.h"
 #include "planner/report/summary.h"
 #include "shared/base/error.h"
@@ -122,12 +124,11 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
   app.add_option("-o,--output", a.output,
                  "Plan file to write, of --new-task the task file; required but for --check");
-  auto* check =
-      app.add_flag("--check", a.check,
-                   "Plan nothing: say what of the task is understood, and what is wrong with it");
+  app.add_flag("--check", a.check,
+               "Plan nothing: say what of the task is understood, and what is wrong with it");
   app.add_option("--report", a.report,
-                 "With --check: HTML file with pictures of scene, starts, particles and goal")
-      ->needs(check);
+                 "HTML file: the plan, played step by step, and why it works; with --check "
+                 "pictures of scene, starts, particles and goal");
   app.add_option("--json", a.json, "File for the statistics, - for standard output");
 }
 
@@ -187,6 +188,28 @@ double checked_time_limit_s(double time_limit_s) {
   throw InputError(format("--time-limit = %g, must be in (0, 86400] s", time_limit_s));
 }
 
+/// Writes what planning has come to. @return exit status
+int tell(const Arguments& a, const planner::PlanReport& report, const Task& task,
+         const Start& start, const Rollout& rollout) {
+  if (a.json == "-") {
+    std::fputs(planner::statistics_json(report, task).c_str(), stdout);
+  } else if (!a.json.empty()) {
+    write_file(a.json, planner::statistics_json(report, task));
+  }
+  if (report.status == planner::PlanStatus::kInCollision) throw InputError(report.reason);
+  if (report.status != planner::PlanStatus::kPlanned) {
+    std::fprintf(stderr, "tenon-plan: no plan from start '%s': %s: %s\n", start.name.c_str(),
+                 planner::to_string(report.status), report.reason.c_str());
+    return 1;
+  }
+  if (!a.report.empty()) {
+    const Task certain = planner::with_goal_certainty(task, *rollout.clone());
+    write_file(a.report, planner::html_report(report, certain));
+  }
+  if (a.json != "-") std::fputs(planner::summary(report, task, a.output).c_str(), stdout);
+  return 0;
+}
+
 int run(const Arguments& a) {
   Task task = load_task(a.task);
   if (a.check) {
@@ -197,10 +220,11 @@ int run(const Arguments& a) {
   }
   if (a.output.empty()) throw InputError("--output is required; see --help");
   if (a.time_limit_s) task.time_limit_s = checked_time_limit_s(*a.time_limit_s);
-  check_apart({{"--output", a.output}, {"--json", a.json}},
+  check_apart({{"--output", a.output}, {"--json", a.json}, {"--report", a.report}},
               {{"the task", a.task}, {"--cell", a.cell}});
   check_writable(a.output);
   if (!a.json.empty() && a.json != "-") check_writable(a.json);
+  if (!a.report.empty()) check_writable(a.report);
 
   planner::PlannerOptions options;
   options.method = chosen_method(a.method);
@@ -232,19 +256,7 @@ int run(const Arguments& a) {
   planner::PlanReport report = planner::make_plan(task, start, rollout, options, now_s);
   report.adapted = std::move(adapted);
 
-  if (a.json == "-") {
-    std::fputs(planner::statistics_json(report, task).c_str(), stdout);
-  } else if (!a.json.empty()) {
-    write_file(a.json, planner::statistics_json(report, task));
-  }
-  if (report.status == planner::PlanStatus::kInCollision) throw InputError(report.reason);
-  if (report.status != planner::PlanStatus::kPlanned) {
-    std::fprintf(stderr, "tenon-plan: no plan from start '%s': %s: %s\n", start.name.c_str(),
-                 planner::to_string(report.status), report.reason.c_str());
-    return 1;
-  }
-  if (a.json != "-") std::fputs(planner::summary(report, task, a.output).c_str(), stdout);
-  return 0;
+  return tell(a, report, task, start, rollout);
 }
 
 }  // namespace
@@ -263,6 +275,7 @@ int main(int argc, char** argv) {
     if (arguments.task.empty()) {
       if (arguments.output.empty()) throw InputError("--output is required; see --help");
       write_nothing_more("--new-task", "--json", arguments.json);
+      write_nothing_more("--new-task", "--report", arguments.report);
       if (!arguments.cell.empty()) {
         throw InputError("--cell: --new-task writes a task for any cell; leave it out");
       }

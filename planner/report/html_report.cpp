@@ -37,19 +37,24 @@ std::string verdict(const ReportData& data) {
   return text + "</p>\n";
 }
 
+/// Whether what the page shows was simulated again for it, or is what planning came to.
+enum class Made { kAgain, kByPlanning };
+
 /// What was checked, and came out how.
-std::string badges(const ReportData& data) {
+std::string badges(const ReportData& data, Made made) {
   const Plan& plan = data.plan;
-  return "<ul class='badges'>\n" +
-         badge(data.certified, data.certified
-                                   ? "Certified again for this page: the chain holds"
-                                   : "Certified again for this page: the chain does NOT hold") +
-         badge(plan.draws_at_goal == plan.draws,
-               format("Validation: %u of %u random starts ended at the goal", plan.draws_at_goal,
-                      plan.draws)) +
-         badge(data.validation.at_goal() == data.validation.draws.size(),
-               "Repeated for this page: " + estimate_text(data.validation, data.task)) +
-         "</ul>\n";
+  const std::string again = made == Made::kAgain ? " again for this page" : "";
+  std::string list = badge(
+      data.certified,
+      "Certified" + again + (data.certified ? ": the chain holds" : ": the chain does NOT hold"));
+  list += badge(plan.draws_at_goal == plan.draws,
+                format("Validation: %u of %u random starts ended at the goal", plan.draws_at_goal,
+                       plan.draws));
+  if (made == Made::kAgain) {
+    list += badge(data.validation.at_goal() == data.validation.draws.size(),
+                  "Repeated for this page: " + estimate_text(data.validation, data.task));
+  }
+  return "<ul class='badges'>\n" + list + "</ul>\n";
 }
 
 /// What stands still: in print, and where no script runs.
@@ -64,23 +69,38 @@ std::string stills(const ReportData& data) {
          std::to_string(data.validation.draws.size()) + " random starts.</p></section>\n";
 }
 
-}  // namespace
-
-std::string html_report(const Plan& plan, const Task& task, const Certification& certification,
-                        const Validation& validation, const SearchStory* story) {
-  const ReportData data = report_data(plan, task, certification, validation);
+std::string page_of(const ReportData& data, const SearchStory* story, Made made) {
+  const Plan& plan = data.plan;
   const std::string task_name = drawing::escaped(plan.task_name);
   const std::string start_name = drawing::escaped(plan.start_name);
   drawing::LivePage page;
   page.title = task_name + ", start " + start_name + ": plan";
   page.heading = "<p class='kicker'>Assembly plan</p><h1>" + task_name + " <span>from start " +
-                 start_name + "</span></h1>\n" + verdict(data) + badges(data);
+                 start_name + "</span></h1>\n" + verdict(data) + badges(data, made);
   page.body =
       "<section class='stage' aria-label='The plan in motion' data-part='stage'></section>\n" +
       stills(data) + reasons(data) + uncertainty_section(data) +
       (story == nullptr ? std::string() : search_section(*story)) + moves_section(data);
   page.json = page_json(data);
   return drawing::live_document(page);
+}
+
+}  // namespace
+
+std::string html_report(const Plan& plan, const Task& task, const Certification& certification,
+                        const Validation& validation, const SearchStory* story) {
+  return page_of(report_data(plan, task, certification, validation), story, Made::kAgain);
+}
+
+std::string html_report(const PlanReport& report, const Task& task) {
+  Validation shown = report.validation;
+  if (shown.draws.size() > kReportDraws) {
+    shown.draws.erase(shown.draws.begin() + kReportDraws, shown.draws.end());
+  }
+  const SearchStory story =
+      read_statistics("statistics", statistics_json(report, task), report.bytes);
+  return page_of(report_data(*report.plan, task, report.certification, shown), &story,
+                 Made::kByPlanning);
 }
 
 }  // namespace tenon::planner

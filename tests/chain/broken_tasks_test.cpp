@@ -104,9 +104,6 @@ TEST(BrokenTasks, ThePageOfACheckHoldsAllThatItsLinesSay) {
       run(folder, {executable("tenon-plan"), "--check", file, "--report", file});
   EXPECT_EQ(over_itself.status, 2);
   EXPECT_EQ(folder.get("task.yaml"), document["task"].as<std::string>());
-  const Ended alone = run(folder, {executable("tenon-plan"), file, "--report", page});
-  EXPECT_EQ(alone.status, 2);
-  EXPECT_NE(alone.err.find("--report requires --check"), std::string::npos) << alone.err;
 }
 
 TEST(BrokenTasks, NoPushThatIsSaidToTouchGoesThroughAWall) {

@@ -1,4 +1,4 @@
-// tenon-inspect --recertify, as a user runs it.
+// tenon-inspect --recertify and --report, as a user runs them.
 
 #include <gtest/gtest.h>
 
@@ -79,6 +79,44 @@ TEST_F(Recertify, RefusesWhatNobodyChecked) {
             std::string::npos);
   EXPECT_EQ(recertify(changed([](Plan& plan) { plan.latency_max_s = 1.0; })).status, 2);
   EXPECT_EQ(recertify(changed([](Plan& plan) { plan.contact_stiffness_Npm *= 10.0; })).status, 2);
+}
+
+/// Without what it says of how it was made.
+std::string without_badges(const std::string& page) {
+  const std::string end = "</ul>";
+  const std::size_t from = page.find("<ul class='badges'>");
+  const std::size_t to = page.find(end, from);
+  if (from == std::string::npos || to == std::string::npos) return "a page without badges";
+  return page.substr(0, from) + page.substr(to + end.size());
+}
+
+// Planning writes the page of what it has; inspection simulates all of it again.
+TEST(PlansPage, OfPlanningIsTheOneOfASimulationMadeAgain) {
+  const ScratchFolder folder;
+  const auto path = [&](const char* file) { return (folder.path() / file).string(); };
+  // How certain the goal has to be follows from the room that it leaves.
+  std::string text = config::read_file(in_tree("planner/tasks/box_on_table_2d.yaml"));
+  const std::size_t key = text.find("  uncertainty_m2:");
+  ASSERT_NE(key, std::string::npos);
+  text.erase(key, text.find('\n', key) + 1 - key);
+  const std::string task = folder.put("box.yaml", text);
+  const Ended planned =
+      run(folder, {executable("tenon-plan"), task, "--start", "4", "--cell", gantry_cell_file(),
+                   "--draws", "300", "-o", path("plan.tnp"), "--json", path("plan.json"),
+                   "--report", path("planned.html")});
+  ASSERT_EQ(planned.status, 0) << planned.err;
+  const Ended inspected = run(folder, {executable("tenon-inspect"), path("plan.tnp"), "--task",
+                                       task, "--cell", gantry_cell_file(), "--statistics",
+                                       path("plan.json"), "--report", path("inspected.html")});
+  ASSERT_EQ(inspected.status, 0) << inspected.err;
+  const std::string by_planning = folder.get("planned.html");
+  const std::string again = folder.get("inspected.html");
+  EXPECT_GT(by_planning.size(), 100'000U);
+  EXPECT_TRUE(without_badges(by_planning) == without_badges(again));
+  EXPECT_EQ(by_planning.find("nan'"), std::string::npos);
+  EXPECT_NE(again.find("Certified again for this page: the chain holds"), std::string::npos);
+  EXPECT_NE(by_planning.find("Certified: the chain holds"), std::string::npos);
+  EXPECT_NE(by_planning.find("300 of 300 random starts"), std::string::npos);
 }
 
 // The input was good: no usage to mend, but a run that failed.
