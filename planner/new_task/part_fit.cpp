@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "planner/new_task/part_frame.h"
 #include "planner/new_task/solid_gap.h"
 
 namespace tenon::planner {
@@ -87,8 +88,9 @@ class Fitting {
   }
 
   /// Where the plug is first free to move to all four sides.
-  [[nodiscard]] double depth_m(const Vector3& way, double clear_m, double aside_m) const {
-    const Eigen::Quaterniond frame = frame_along(way);
+  [[nodiscard]] double depth_m(const Eigen::Quaterniond& frame, double clear_m,
+                               double aside_m) const {
+    const Vector3 way = frame * Vector3::UnitZ();
     const auto held = [&](double out_m) {
       for (int i = 0; i < 4; ++i) {
         const double angle_rad = 0.5 * std::numbers::pi * i;
@@ -129,6 +131,10 @@ class Fitting {
       both_rad += free_rad;
     }
     return std::min(kMostTurn_rad, 0.5 * both_rad);
+  }
+
+  [[nodiscard]] Eigen::Quaterniond frame_along(const Vector3& way) const {
+    return part_frame(way, plug_.mesh(), X_EH_.orientation, socket_.mesh());
   }
 
   /// The file's axes, up first, and those in which the plug has its largest flat faces.
@@ -177,10 +183,6 @@ class Fitting {
 
 }  // namespace
 
-Eigen::Quaterniond frame_along(const Vector3& way) {
-  return Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), way);
-}
-
 PartFit fit_of(const std::shared_ptr<const Solid>& plug, const std::shared_ptr<const Solid>& socket,
                const Pose& X_SP) {
   const Fitting fitting(plug, socket, X_SP);
@@ -195,17 +197,17 @@ PartFit fit_of(const std::shared_ptr<const Solid>& plug, const std::shared_ptr<c
   }
   if (!fit.way_out) return fit;
   const Vector3& way = *fit.way_out;
-  const Eigen::Quaterniond frame = frame_along(way);
+  fit.frame = fitting.frame_along(way);
   // The play half-way in depends on the depth, the depth on the play: a part that is out has some
   // millimetres of it at once, so that a first depth with the least will do.
-  const double first_m = fitting.depth_m(way, fit.clear_m, kAside_m);
+  const double first_m = fitting.depth_m(fit.frame, fit.clear_m, kAside_m);
   for (std::size_t axis = 0; axis < fit.play_m.size(); ++axis) {
-    const Vector3 aside = frame * Vector3::Unit(static_cast<int>(axis));
+    const Vector3 aside = fit.frame * Vector3::Unit(static_cast<int>(axis));
     fit.play_m[axis] = fitting.play_m(0.5 * first_m * way, aside);
   }
   const double most_m = *std::max_element(fit.play_m.begin(), fit.play_m.end());
   const bool loose = most_m > plug->size_m().maxCoeff();
-  fit.depth_m = loose ? first_m : fitting.depth_m(way, fit.clear_m, most_m + kAside_m);
+  fit.depth_m = loose ? first_m : fitting.depth_m(fit.frame, fit.clear_m, most_m + kAside_m);
   const Vector3 half_way_m = 0.5 * fit.depth_m * way;
   fit.yaw_matters = fitting.held_about(way, half_way_m);
   for (std::size_t axis = 0; axis < 2; ++axis) {

@@ -16,8 +16,9 @@ struct PartFit {
   std::optional<Vector3> way_out;
   double depth_m = 0.0;  ///< along it until the plug is free to move aside
   double clear_m = 0.0;  ///< along it until the plug is past everything
-  /// What the plug can move aside, both ways together, half-way in: across the way out, in the axes
-  /// of a frame whose z is the way out (frame_along()).
+  /// Whose z is the way out, in the socket's file, see part_frame().
+  Eigen::Quaterniond frame = Eigen::Quaterniond::Identity();
+  /// What the plug can move aside, both ways together, half-way in: along x and y of the frame.
   std::array<double, 2> play_m{};
   /// How far it may stand turned about each of them as it sits there, either way: askew by its play
   /// over its depth; about the way out as far as it is free half-way in. At most kMostTurn_rad.
@@ -35,8 +36,5 @@ inline constexpr double kMostTurn_rad = 0.2;
 /// @param X_SP the plug's file in the socket's
 [[nodiscard]] PartFit fit_of(const std::shared_ptr<const Solid>& plug,
                              const std::shared_ptr<const Solid>& socket, const Pose& X_SP);
-
-/// The rotation of a frame whose z is a direction; none for z itself.
-[[nodiscard]] Eigen::Quaterniond frame_along(const Vector3& way);
 
 }  // namespace tenon::planner

@@ -51,7 +51,7 @@ double above_tip_m(const NewTask& task) {
 /// Where the tool's origin is in the socket's file: above the plug's lowest place along the way
 /// that it goes in, amid the plug's box, or, where it turns, where pushes do not turn it.
 Vector3 origin_m(const NewTask& task) {
-  const Eigen::Quaterniond frame = frame_along(*task.fit.way_out);
+  const Eigen::Quaterniond& frame = task.fit.frame;
   const Pose X_FP = compose(inverse({Vector3::Zero(), frame}), task.X_SP);
   TriangleMesh plug = task.plug.solid->mesh();
   Eigen::AlignedBox3d box;
@@ -77,7 +77,7 @@ struct Numbers {
 };
 
 Numbers numbers_of(const NewTask& task) {
-  const Eigen::Quaterniond frame = frame_along(*task.fit.way_out);
+  const Eigen::Quaterniond& frame = task.fit.frame;
   Numbers n;
   n.X_TS = inverse({origin_m(task), frame});
   n.X_GP = compose(n.X_TS, task.X_SP);

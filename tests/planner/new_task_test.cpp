@@ -77,6 +77,37 @@ TEST(NewTask, TheWayOutNeedNotBeUp) {
   EXPECT_NEAR(fit.depth_m, 20e-3, 0.6e-3);
 }
 
+// What the files' axes are is nobody's choice: those of the task go straight out of the sides.
+TEST(NewTask, TheAxesAreThoseOfTheSidesHoweverTheFilesAreTurned) {
+  const auto parts = tests::example_parts();
+  const auto fit_turned = [&](const Eigen::Quaterniond& turn) {
+    const Pose pose{{0.01, 0.02, 0.03}, turn};
+    return fit_of(solid_of(parts.at("keyed_peg.stl"), pose),
+                  solid_of(parts.at("keyed_socket.stl"), pose), {});
+  };
+  EXPECT_TRUE(
+      fit_turned(Eigen::Quaterniond::Identity()).frame.isApprox(Eigen::Quaterniond::Identity()));
+  for (const Vector3& turn_rad :
+       {Vector3{0.0, 0.0, 0.43}, Vector3{0.0, 0.0, -0.6}, Vector3{0.5, 0.3, 0.9}}) {
+    const Eigen::Quaterniond turn = rotation_of(turn_rad);
+    const PartFit fit = fit_turned(turn);
+    ASSERT_TRUE(fit.way_out.has_value());
+    const Vector3 x = turn.conjugate() * fit.frame * Vector3::UnitX();
+    EXPECT_NEAR(x.cwiseAbs().maxCoeff(), 1.0, 1e-5) << turn_rad.transpose();
+    EXPECT_TRUE((fit.frame * Vector3::UnitZ()).isApprox(*fit.way_out, 1e-9));
+    EXPECT_NEAR(fit.play_m[0], 1e-3, 0.02e-3);
+    EXPECT_NEAR(fit.play_m[1], 1e-3, 0.02e-3);
+  }
+}
+
+// No facet of what is round is a side to push against.
+TEST(NewTask, TheAxesOfRoundPartsAreThoseOfTheirFiles) {
+  const Pose turned{Vector3::Zero(), rotation_of({0.0, 0.0, 0.031})};
+  const PartFit fit =
+      fit_of(solid_of(round_peg(10e-3), turned), solid_of(round_socket(10.3e-3), turned), {});
+  EXPECT_TRUE(fit.frame.isApprox(Eigen::Quaterniond::Identity()));
+}
+
 TEST(NewTask, SaysWhatOverlapsAndWhatIsLockedIn) {
   const PartFit tight = fit_of(solid_of(round_peg(10.5e-3)), solid_of(round_socket(10.3e-3)), {});
   EXPECT_NEAR(tight.overlap_m, 0.2e-3, 0.05e-3);
