@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "planner/belief/belief.h"
+#include "shared/task/pose_error.h"
+
 namespace tenon::planner {
 namespace {
 
@@ -19,7 +22,11 @@ bool same_start(const Particle& a, const Particle& b) {
 
 SearchedGraph::SearchedGraph(const Task& task, Belief start, Attractors attractors,
                              SuccessorEngine& succ)
-    : task_(task), belief_(std::move(start)), attractors_(std::move(attractors)), succ_(succ) {
+    : task_(task),
+      belief_(std::move(start)),
+      middle_m_(mean_pose(belief_).position_m),
+      attractors_(std::move(attractors)),
+      succ_(succ) {
   graph_.emplace(task_, belief_, attractors_, succ_);
 }
 
@@ -43,9 +50,24 @@ bool SearchedGraph::add(const Particle& start) {
 std::size_t SearchedGraph::add_starts(const Refutation& refutation) {
   const std::vector<Particle>& others = refutation.others;
   const std::size_t some = std::min(others.size(), kOthersMax);
-  std::size_t added = add(refutation.chain.start) ? 1 : 0;
-  for (std::size_t i = 0; i < some; ++i) added += add(others[i * others.size() / some]) ? 1 : 0;
+  std::size_t added = 0;
+  const auto gain = [&](const Particle& start) {
+    if (!add(start)) return;
+    ++added;
+    if (task_.motion.carried_axes) (void)add(opposite(start));
+  };
+  gain(refutation.chain.start);
+  for (std::size_t i = 0; i < some; ++i) gain(others[i * others.size() / some]);
   return added;
+}
+
+Particle SearchedGraph::opposite(const Particle& start) const {
+  Particle other = start;
+  other.pose.position_m = 2.0 * middle_m_ - start.pose.position_m;
+  Vector6 turn = Vector6::Zero();
+  turn.tail<3>() = -rotation_vector(start.environment.orientation);
+  other.environment = environment_pose(turn, task_.error_about_m);
+  return other;
 }
 
 std::vector<Particle>::const_iterator SearchedGraph::known(const Particle& start) const {

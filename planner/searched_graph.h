@@ -33,7 +33,10 @@ class SearchedGraph {
   /// Makes a start a particle: graph() begins anew. @return false where it is one already
   bool add(const Particle& start);
   /// Likewise the start of a refutation's chain and, evenly among its others, up to eight: what is
-  /// made anew for these holds for most of those between them. @return how many are new
+  /// made anew for these holds for most of those between them. Where moves are aimed at what the
+  /// mean of all has to do, each comes with the one that is as far off the other way: starts that
+  /// miss are on one side, and a way made for a mean beside the middle leads nobody.
+  /// @return how many of those that missed are new
   std::size_t add_starts(const Refutation& refutation);
 
   /// A chain from a start that the search did not know of makes that start a particle: graph()
@@ -42,6 +45,7 @@ class SearchedGraph {
   std::optional<std::size_t> learn(const Refutation& refutation, const std::vector<PathEdge>& path);
 
  private:
+  [[nodiscard]] Particle opposite(const Particle& start) const;
   [[nodiscard]] std::vector<Particle>::const_iterator known(const Particle& start) const;
   /// The step in which a chain leaves what the search had foreseen for its particle; the last one
   /// where it does not.
@@ -50,6 +54,7 @@ class SearchedGraph {
 
   const Task& task_;
   Belief belief_;
+  Vector3 middle_m_;  ///< of the start's particles, before there were others
   Attractors attractors_;
   SuccessorEngine& succ_;
   std::optional<BeliefGraph> graph_;
