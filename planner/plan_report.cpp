@@ -44,4 +44,12 @@ SearchRound round_of(const SearchParameters& parameters, const SearchResult& sea
   return round;
 }
 
+void last_is_the_plan(std::vector<SearchRound>& rounds) {
+  constexpr const char* kPlan = "the plan";
+  for (SearchRound& round : rounds) {
+    if (round.outcome == kPlan) round.outcome = "a plan, until a cheaper one was found";
+  }
+  rounds.back().outcome = kPlan;
+}
+
 }  // namespace tenon::planner

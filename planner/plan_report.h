@@ -50,6 +50,9 @@ struct SearchRound {
 [[nodiscard]] SearchRound round_of(const SearchParameters& parameters, const SearchResult& search,
                                    std::size_t heuristics);
 
+/// The last round's path is the plan, and no other one's is any more.
+void last_is_the_plan(std::vector<SearchRound>& rounds);
+
 struct PlanReport {
   PlanMethod method = PlanMethod::kMha;
   PlanStatus status = PlanStatus::kExhausted;

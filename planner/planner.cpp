@@ -83,7 +83,7 @@ class Planning {
     const auto enough = [this] {
       return !is_baseline() && succ_.counters().rollouts >= kFirstMoves;
     };
-    bool planned = !attractors.turns.empty() && followed_in_turn(attractors.turns);
+    bool planned = !attractors.turns.empty() && followed_in_turn(attractors);
     if (!planned) {
       searched_.emplace(task_, start, attractors, succ_);
       planned = searched([&] { return out_of_budget() || enough(); }) ||
@@ -168,17 +168,30 @@ class Planning {
   }
 
   /// Starts that were not known, and that the guides do not lead, have others looked for that hold
-  /// for them too.
-  bool followed_in_turn(std::vector<Guide> candidates) {
+  /// for them too. A guide that does not lead all corners at once may lead the tips, and what of
+  /// the corners its way then misses.
+  bool followed_in_turn(const Attractors& attractors) {
+    const Belief tips = searched_->start();
     for (const Particle& corner : corners().particles) searched_->add(corner);
+    const auto leads_from_some = [&](const Guide& guide) {
+      if (leads(guide)) return true;
+      const Belief all = searched_->start();
+      searched_.emplace(task_, tips, attractors, succ_);
+      if (leads(guide)) return true;
+      searched_.emplace(task_, all, attractors, succ_);
+      return false;
+    };
+    doing_ = "following guides";
+    std::vector<Guide> candidates = attractors.turns;
     std::size_t known = searched_->start().particles.size();
-    while (!followed(candidates)) {
+    while (std::none_of(candidates.begin(), candidates.end(), leads_from_some)) {
       if (searched_->start().particles.size() == known || out_of_budget()) return false;
       known = searched_->start().particles.size();
       doing_ = "looking for guides";
       candidates = timed(now_s_, report_.times.attractors_s,
                          [this] { return touched_in_turn(searched_->start()); });
       tell(guides_found(candidates, long_succ_.counters().rollouts));
+      doing_ = "following guides";
     }
     return true;
   }
@@ -279,17 +292,8 @@ class Planning {
     report_.plan = through_bytes(judged.plan);
     report_.certification = std::move(judged.certification);
     report_.validation = std::move(judged.estimate);
-    if (search.has_path) kept_round();
+    if (search.has_path) last_is_the_plan(report_.rounds);
     if (options_.planned) options_.planned(report_);
-  }
-
-  /// The last search's path is the plan, and no other one's is any more.
-  void kept_round() {
-    constexpr const char* kPlan = "the plan";
-    for (SearchRound& round : report_.rounds) {
-      if (round.outcome == kPlan) round.outcome = "a plan, until a cheaper one was found";
-    }
-    report_.rounds.back().outcome = kPlan;
   }
 
   /// Ever lower weights while the budget lasts, the last of them 1. What refutes a path on the way

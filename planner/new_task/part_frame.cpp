@@ -84,7 +84,7 @@ class SquareSides {
 
 Eigen::Quaterniond part_frame(const Vector3& way, const TriangleMesh& plug,
                               const Eigen::Quaterniond& plug_turn, const TriangleMesh& socket) {
-  const auto along = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), way);
+  auto along = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), way);
   SquareSides sides;
   sides.add(socket, along.conjugate());
   sides.add(plug, along.conjugate() * plug_turn);

@@ -202,6 +202,48 @@ TEST(TouchTurns, AreFollowedByTheTruePhysicsWhereTheOtherHadAKnownStartWrong) {
       }));
 }
 
+/// As the block, but no tool that is turned about several axes backs off upwards.
+class NoCornerBacksOff final : public Rollout {
+ public:
+  explicit NoCornerBacksOff(double half_m) : half_m_(half_m), block_(half_m) {}
+
+  [[nodiscard]] RolloutResult simulate(const Particle& particle, const MoveParameters& move,
+                                       std::int64_t step_us,
+                                       std::vector<TraceSample>* trace) override {
+    constexpr double kTurned_rad = 1e-6;
+    const Vector3 turn_rad = rotation_vector(particle.environment.orientation);
+    const auto turns = (turn_rad.array().abs() > kTurned_rad).count();
+    if (turns > 1 && move.displacement.z() > 1e-3) return {};
+    return block_.simulate(particle, move, step_us, trace);
+  }
+  [[nodiscard]] bool in_collision(const Pose& tool) override { return block_.in_collision(tool); }
+  [[nodiscard]] std::unique_ptr<Rollout> clone() const override {
+    return std::make_unique<NoCornerBacksOff>(half_m_);
+  }
+
+ private:
+  double half_m_;
+  BlockRollout block_;
+};
+
+// Before another guide is: several errors at their largest at once are the rarest of starts.
+TEST(TouchTurns, ThatDoNotLeadAllCornersAtOnceAreTriedWithTheTips) {
+  const Turns turns(0.04);
+  const NoCornerBacksOff search(0.04);
+  std::vector<std::string> lines;
+  PlannerOptions options;
+  options.search_physics = &search;
+  options.progress = [&](const std::string& line) { lines.push_back(line); };
+  const PlanReport report = make_plan(turns.task, turns.start, BlockRollout(0.04), options);
+  EXPECT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+  int left = 0;
+  for (const std::string& line : lines) {
+    if (line.find("leads to the goal") != std::string::npos) break;
+    left += line.find("is left at") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(left, 1);
+}
+
 TEST(TouchTurns, LeaveASideThatIsNarrowerThanWhatIsUncertain) {
   Turns turns(1.5e-3);
   for (const Guide& guide : turns.find()) {
