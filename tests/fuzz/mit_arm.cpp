@@ -2,13 +2,11 @@
 // that arrives may crash it, make it report what is no number, let it forget a fault, or let it
 // switch a motor on while it knows of one.
 //
-// Input: one byte (bit 0: traffic already during bring-up), then operations, each a byte and its
-// arguments.
+// Input: as support/arm_bench.h has it.
 
 #include "hw/mit/mit_arm.h"
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -21,6 +19,7 @@
 #include "shared/config/load.h"
 #include "shared/mit/robot_motors.h"
 #include "sim/cell/bus/virtual_bus.h"
+#include "tests/fuzz/support/arm_bench.h"
 #include "tests/fuzz/support/must.h"
 #include "tests/hw/scripted_node.h"
 #include "tests/support/frame_filter.h"
@@ -30,12 +29,8 @@ namespace {
 
 using namespace tenon;
 using namespace tenon::hw;
+using fuzz::kMillisecond_ns;
 using fuzz::must;
-
-constexpr int kOperationsMax = 300;
-constexpr int kBringUpMax_ms = 700;
-constexpr int kDisturbedBringUpMax_ms = 3000;
-constexpr std::int64_t kMillisecond_ns = 1'000'000;
 
 // What the master listens to; motors 1 to 6 answer on 11h to 16h, the sensor is node 20h.
 constexpr std::array<std::uint16_t, 16> kHeard = {0x011, 0x012, 0x013, 0x014, 0x015, 0x016,
@@ -138,83 +133,19 @@ class ScriptedMotors {
   std::map<std::uint8_t, Motor> motors_;
 };
 
-class Bench {
- public:
-  void run(ByteReader& in) {
-    const bool disturbed = (in.read<std::uint8_t>() & 1U) != 0;
-    if (!bring_up(disturbed, in)) return;
-    for (int i = 0; i < kOperationsMax && in.remaining() > 0; ++i) {
-      if (!operate(in)) return;
-    }
-  }
-
+class Bench final : public fuzz::ArmBench {
  private:
-  bool bring_up(bool disturbed, ByteReader& in) {
-    for (int i = 0; i < (disturbed ? kDisturbedBringUpMax_ms : kBringUpMax_ms); ++i) {
-      if (arm_.prepare(now_ns_)) return true;
-      if (arm_.state() == ArmState::kFault) {
-        must(disturbed, "an undisturbed bring-up succeeds");
-        must(arm_.fault().kind != ArmFaultKind::kNone, "a fault has a kind");
-        return false;
-      }
-      step_devices();
-      pass(kMillisecond_ns);
-      if (disturbed && in.remaining() > 0) disturb(in.read<std::uint8_t>(), in);
-    }
-    must(disturbed, "an undisturbed bring-up succeeds");
-    return false;
+  hw::DeviceArm& arm() override { return arm_; }
+  sim::VirtualBus& bus() override { return bus_; }
+  CanBus& intruder() override { return intruder_; }
+  std::int64_t& now_ns() override { return now_ns_; }
+  [[nodiscard]] const std::array<std::uint16_t, 16>& heard() const override { return kHeard; }
+
+  void go_on(std::uint8_t operation, ByteReader& in) override {
+    for (int i = 0; i <= operation >> 3U; ++i) cycle(0, in);
   }
 
-  /// False: the arm is not in operation any more.
-  bool operate(ByteReader& in) {
-    const auto operation = in.read<std::uint8_t>();
-    switch (operation & 7U) {
-      case 0:
-      case 1:
-        cycle(operation, in);
-        return true;
-      case 2:
-        for (int i = 0; i <= operation >> 3U; ++i) cycle(0, in);
-        return true;
-      case 3:  // starts over after a fault
-        if (arm_.state() != ArmState::kFault) return true;
-        fault_ = {};
-        bus_.set_up(true);
-        bus_.set_bus_off(0, false);
-        return bring_up(true, in);
-      default:
-        disturb(operation, in);
-        return true;
-    }
-  }
-
-  void disturb(std::uint8_t operation, ByteReader& in) {
-    switch (operation & 7U) {
-      case 4: {  // any frame
-        CanFrame frame;
-        frame.id = in.read<std::uint16_t>() & 0x7FFU;
-        frame.extended = (operation & 0x80U) != 0;
-        frame.remote = (operation & 0x40U) != 0;
-        return inject(frame, in.read<std::uint8_t>() % 9, in);
-      }
-      case 5:  // a frame that the master listens to, of its usual length
-        return inject({.id = kHeard[operation >> 4U]}, 8, in);
-      case 6:  // one of another length
-        return inject({.id = kHeard[operation >> 4U]}, in.read<std::uint8_t>() % 9, in);
-      case 7:
-        return turn_knob(operation, in);
-      default:
-        return;
-    }
-  }
-
-  void inject(CanFrame frame, unsigned length, ByteReader& in) {
-    frame.length = static_cast<std::uint8_t>(length);
-    for (unsigned i = 0; i < length; ++i) frame.data[i] = in.read<std::uint8_t>();
-    static_cast<void>(intruder_.send(frame));
-  }
-
-  void turn_knob(std::uint8_t operation, ByteReader& in) {
+  void turn_knob(std::uint8_t operation, ByteReader& in) override {
     const auto which = in.read<std::uint8_t>();
     if (which < 0xC0) return motors_.turn_knob(operation);
     switch (which & 7U) {
@@ -245,9 +176,7 @@ class Bench {
     }
   }
 
-  void cycle(std::uint8_t operation, ByteReader& in) {
-    constexpr std::array<ArmRequest, 4> kRequests = {ArmRequest::kEnabled, ArmRequest::kDisabled,
-                                                     ArmRequest::kQuickStop, ArmRequest::kEnabled};
+  void cycle(std::uint8_t operation, ByteReader& in) override {
     JointVector position = feedback_.position;
     // Also far outside of what 16 bits of counts hold, and no number at all.
     if ((operation & 0x20U) != 0) position[0] += in.read<std::int16_t>() * 1e-4;
@@ -256,12 +185,12 @@ class Bench {
     arm_.start_cycle(now_ns_);
     step_devices();
     static_cast<void>(arm_.receive(now_ns_ + kMillisecond_ns, feedback_));
-    arm_.command(now_ns_ + kMillisecond_ns, kRequests[operation >> 3U & 3U], position);
+    arm_.command(now_ns_ + kMillisecond_ns, request_of(operation), position);
     pass(kMillisecond_ns * cell().robot.cycle_us / 1000);
-    check_feedback();
+    check(feedback_);
   }
 
-  void step_devices() {
+  void step_devices() override {
     motors_.step();
     sensor_.step(now_ns_);
     ReceivedFrame unheard;
@@ -269,38 +198,14 @@ class Bench {
     }
   }
 
-  void pass(std::int64_t time_ns) {
-    now_ns_ += time_ns;
-    bus_.advance(now_ns_);
-  }
-
-  void check_feedback() {
-    const std::uint32_t all = (1U << cell().robot.joints.size()) - 1U;
-    for (const JointVector* values : {&feedback_.position, &feedback_.effort}) {
-      for (const double value : *values) must(std::isfinite(value), "feedback is made of numbers");
-    }
-    must(feedback_.wrench.allFinite(), "and so is the wrench");
-    must((feedback_.joints_fresh & ~all) == 0, "joints that there are not do not answer");
-    must((feedback_.joints_off & ~feedback_.joints_fresh) == 0,
-         "who is silent says nothing of power");
-    const ArmFault fault = arm_.fault();
-    const bool faulty = arm_.state() == ArmState::kFault;
-    must(faulty == (fault.kind != ArmFaultKind::kNone), "there is a fault exactly in fault");
-    must(fault_.kind == ArmFaultKind::kNone ||
-             (fault_.kind == fault.kind && fault_.node == fault.node),
-         "the first fault stays");
-    fault_ = fault;
-  }
-
-  void check_sent(const CanFrame& frame) const {
-    must(frame.length <= 8 && frame.id <= 0x7FF && !frame.extended && !frame.remote,
-         "the master sends data frames of 11 bits");
+  void check_command(const CanFrame& frame) const {
+    check_sent(frame);
     if (frame.id == 0 || frame.id > 6) return;
     must(frame.length == 8, "a motor is sent eight bytes");
     bool special = true;
     for (unsigned i = 0; i < 7; ++i) special = special && frame.data[i] == 0xFF;
     must(!special || frame.data[7] != 0xFE, "no motor's zero is set");
-    must(!special || frame.data[7] != 0xFC || fault_.kind == ArmFaultKind::kNone,
+    must(!special || frame.data[7] != 0xFC || fault().kind == ArmFaultKind::kNone,
          "no motor is switched on in fault");
   }
 
@@ -311,11 +216,10 @@ class Bench {
   ScriptedNode sensor_{ScriptedNode::Kind::kSensor, cell().robot.sensor.node, bus_.attach()};
   CanBus& intruder_{bus_.attach()};
   tests::FrameFilter filter_{bus_, [this](const CanFrame& frame, std::size_t end) {
-                               if (end == 0) check_sent(frame);
+                               if (end == 0) check_command(frame);
                                return true;
                              }};
   ArmFeedback feedback_;
-  ArmFault fault_;
   std::int64_t now_ns_ = 1'000'000'000;
 };
 
