@@ -21,6 +21,7 @@
 #include "planner/report/html_report.h"
 #include "planner/report/statistics.h"
 #include "planner/report/summary.h"
+#include "planner/smaller_errors.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
 #include "shared/config/command_line.h"
@@ -255,6 +256,7 @@ int run(const Arguments& a) {
   write_each(a, options, now_s);
   planner::PlanReport report = planner::make_plan(task, start, rollout, options, now_s);
   report.adapted = std::move(adapted);
+  report.reason += planner::smaller_errors_text(report, task, start, rollout, options, now_s);
 
   return tell(a, report, task, start, rollout);
 }

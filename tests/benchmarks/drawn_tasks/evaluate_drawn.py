@@ -9,63 +9,27 @@ times are seconds of one core and of the clock, on the machine as it is; reach i
 """
 
 import argparse
-import json
 import pathlib
-import resource
 import subprocess
 import sys
-import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from planned_and_run import evaluate, plan, print_failures  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 CELL = ROOT / "hw" / "cells" / "gantry3_peg.yaml"
 WORLD = ROOT / "sim" / "experiments" / "peg_in_hole.yaml"
 
 
-def plan(program, task, threads, time_limit_s):
-    """Plans once; what came of it, from beside the plan where it is known."""
-    note = task.with_suffix(".planned.json")
-    if note.exists():
-        return json.loads(note.read_text())
-    command = [program, task, "--cell", CELL, "-o", task.with_suffix(".tnp")]
-    command += ["--json", task.with_suffix(".stats.json"), "--threads", str(threads)]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    began = time.monotonic()
-    ended = subprocess.run(
-        [str(part) for part in command + ["--time-limit", time_limit_s]],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if ended.returncode not in (0, 1):
-        sys.exit(f"evaluate_drawn: {task}: tenon-plan ended with {ended.returncode}: {ended.stderr}")
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    said = ended.stderr.strip().splitlines() or ended.stdout.strip().splitlines() or [""]
-    result = {
-        "planned": ended.returncode == 0,
-        "seconds": time.monotonic() - began,
-        "core_seconds": after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime,
-        "said": "" if ended.returncode == 0 else said[-1],
-    }
-    note.write_text(json.dumps(result) + "\n")
-    return result
-
-
-def evaluate(program, task, runs, seed, threads):
-    """The summary of the runs; tenon-evaluate itself goes on where it was stopped."""
-    results = task.with_suffix(".runs.json")
-    known = json.loads(results.read_text())["plans"][0] if results.exists() else None
-    if known is None or known["summary"]["success"]["runs"] < runs:
-        command = [program, "--cell", CELL, "--task", task, "--plan", task.with_suffix(".tnp")]
-        command += ["--experiment", WORLD, "-n", runs, "--seed", seed, "--threads", threads]
-        subprocess.run(
-            [str(part) for part in command + ["--json", results]], stdout=subprocess.DEVNULL, check=True
-        )
-        known = json.loads(results.read_text())["plans"][0]
-    return known
-
-
 def row(task, arguments):
-    planned = plan(arguments.bin / "tenon-plan", task, arguments.threads, arguments.time_limit)
+    planned = plan(
+        arguments.bin / "tenon-plan",
+        task,
+        CELL,
+        task.with_suffix(""),
+        arguments.threads,
+        arguments.time_limit,
+    )
     took = f"{task.stem:24s} {planned['core_seconds']:7.1f} s of a core, {planned['seconds']:7.1f} s"
     if not planned["planned"]:
         print(f"{took}  no plan: {planned['said']}", flush=True)
@@ -74,7 +38,15 @@ def row(task, arguments):
         print(took, flush=True)
         return True, 0, 0, 0
     known = evaluate(
-        arguments.bin / "tenon-evaluate", task, arguments.runs, arguments.seed, arguments.threads
+        arguments.bin / "tenon-evaluate",
+        task,
+        CELL,
+        WORLD,
+        task.with_suffix(".tnp"),
+        task.with_suffix(".runs.json"),
+        arguments.runs,
+        arguments.seed,
+        arguments.threads,
     )
     summary = known["summary"]
     within = summary["within"][-1]
@@ -84,11 +56,7 @@ def row(task, arguments):
         f" {summary['done_but_wrong']} done but wrong",
         flush=True,
     )
-    for group in known["failures"]:
-        print(
-            f"    {group['runs']} {group['class']} with {group['outcome']}, first run"
-            f" {group['first_run']}: {group['first_reason']}"
-        )
+    print_failures(known)
     return True, within["succeeded"], within["runs"], summary["done_but_wrong"]
 
 

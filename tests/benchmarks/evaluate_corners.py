@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""Plans every shipped task from every start in every variant but #paper, and has the virtual arm execute each
+plan at the corners of what the task leaves open: friction low or high, the part as drawn or its largest.
+
+  evaluate_corners.py --out FOLDER [--seed S] [--runs N] [--only PART] [--bin FOLDER]
+
+The cell is the first shipped one that a plan is found for; all else differs from the planner's world as the
+experiment of box_on_table (a box) or peg_in_hole (what goes into something) says. A corner holds where 99 % of
+the runs within the planned reach succeed. FOLDER keeps plans and runs: started again, only what is missing is
+made. Take another folder for another build.
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+
+from planned_and_run import evaluate, plan, print_failures
+from plan_times import ROOT, TASKS, starts
+
+CELLS = ["gantry3", "gantry3_peg", "csp6_bench", "csp6_peg", "csp6"]
+
+
+def variants(file):
+    block = re.search(r"^variants:\n((?:[ #].*\n|\n)*)", file.read_text(), re.M)
+    return re.findall(r"^  ([\w.-]+):", block.group(1), re.M) if block else []
+
+
+def shipped():
+    """Pairs of a task, or variant of one, and a start."""
+    for file in sorted(TASKS.glob("*.yaml")):
+        for task in [str(file), *(f"{file}#{v}" for v in variants(file) if v != "paper")]:
+            yield from ((task, start) for start in starts(file))
+
+
+def corners(task):
+    """Where no part is larger than drawn there is no largest."""
+    text = pathlib.Path(task.partition("#")[0]).read_text()
+    sizes = ["drawn", "largest"] if re.search(r"^\s+oversize_m: *[^0\s]|oversize_m: *0\.\d*[1-9]", text, re.M) else ["drawn"]
+    return [f"{friction},{size}" for friction in ("low", "high") for size in sizes]
+
+
+def planned_for_a_cell(task, start, stem, arguments):
+    """The first cell with a plan; None and the reasons where there is none."""
+    reasons = []
+    for name in CELLS:
+        cell = ROOT / "hw" / "cells" / f"{name}.yaml"
+        known = plan(
+            arguments.bin / "tenon-plan",
+            task,
+            cell,
+            stem.with_name(f"{stem.name}.{name}"),
+            arguments.threads,
+            arguments.time_limit,
+            ["--start", start],
+        )
+        if known["planned"]:
+            return cell, reasons
+        reasons.append(f"{name}: {known['said']}")
+    return None, reasons
+
+
+def measure(task, start, arguments):
+    """Prints a line a corner; how many corners were run, how many hold, and how many runs were done but wrong."""
+    name = pathlib.Path(task).stem + (f"#{task.partition('#')[2]}" if "#" in task else "")
+    stem = arguments.out / f"{name.replace('#', '_')}_{start}"
+    cell, reasons = planned_for_a_cell(task, start, stem, arguments)
+    if cell is None:
+        print(f"{name} from {start}: no plan", *reasons, sep="\n    ", flush=True)
+        return 0, 0, 0
+    kind = "box_on_table" if name.startswith("box") else "peg_in_hole"
+    held = wrong = 0
+    for corner in corners(task):
+        known = evaluate(
+            arguments.bin / "tenon-evaluate",
+            task,
+            cell,
+            ROOT / "sim" / "experiments" / f"{kind}.yaml",
+            stem.with_name(f"{stem.name}.{cell.stem}.tnp"),
+            stem.with_name(f"{stem.name}.{cell.stem}.{corner.replace(',', '_')}.json"),
+            arguments.runs,
+            arguments.seed,
+            arguments.threads,
+            ["--corner", corner],
+        )
+        within = known["summary"]["within"][-1]
+        holds = within["succeeded"] >= 0.99 * within["runs"]
+        held += holds
+        wrong += known["summary"]["done_but_wrong"]
+        print(
+            f"{name} from {start}, {cell.stem}, {corner}: {within['succeeded']} of {within['runs']} within"
+            f" {within['distance']:g} sigma, {known['summary']['done_but_wrong']} done but wrong"
+            f"{'' if holds else '  DOES NOT HOLD'}",
+            flush=True,
+        )
+        if not holds:
+            print_failures(known)
+    return len(corners(task)), held, wrong
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--seed", type=int, default=1, help="of the runs")
+    parser.add_argument("--runs", type=int, default=200, help="at each corner")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--time-limit", type=float, default=300.0)
+    parser.add_argument("--only", default="", help="tasks with this in their name")
+    parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build" / "release" / "bin")
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    if not (arguments.bin / "tenon-plan").exists():
+        sys.exit(f"evaluate_corners: {arguments.bin} holds no tenon-plan: build the preset release, or --bin")
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    rows = [measure(t, s, arguments) for t, s in shipped() if arguments.only in pathlib.Path(t).name]
+    print(
+        f"{sum(held for _, held, _ in rows)} of {sum(run for run, *_ in rows)} corners hold, of"
+        f" {sum(1 for run, *_ in rows if run)} plans; {sum(1 for run, *_ in rows if not run)} without a plan;"
+        f" {sum(wrong for *_, wrong in rows)} runs done but wrong"
+    )
+
+
+if __name__ == "__main__":
+    main()
