@@ -51,6 +51,7 @@ if [[ -z $bin ]]; then
 fi
 if [[ -z $cell ]]; then
   case $task in  # what each cell's file says that it stands before
+    box_on_table_3d) cell=gantry3_peg ;;
     box_on_table_*) cell=csp6 ;;
     peg_in_hole_tilt) cell=csp6_peg ;;
     peg_in_hole_*) cell=gantry3_peg ;;
