@@ -22,12 +22,26 @@ constexpr std::int64_t kLater_ns = 400'000'000;
 constexpr double kWay_m = 0.01;
 constexpr std::int64_t kPause_ns = 1'000'000'000;
 // A masked detector may leave a run without an end.
-constexpr std::int64_t kMost_ns = 120'000'000'000;
+constexpr std::int64_t kMost_ns = 60'000'000'000;
 
 /// A shipped one, or one that tests have a plan for.
 Cell cell_named(const std::string& name) {
   const std::filesystem::path own = in_tree("tests/plans/" + name + "/cell.yaml");
   return std::filesystem::exists(own) ? load_cell(own) : shipped_cell(name);
+}
+
+/// Where the tool meets what stands in its way: halfway between two moments of a phase.
+struct Meeting {
+  int axis = 0;
+  double sign = 0.0;
+  Vector3 tool_m = Vector3::Zero();
+};
+
+Meeting meeting_in(const Ground& ground, FaultPhase phase) {
+  const Vector3& from = ground.begins[static_cast<std::size_t>(phase)].tool_m;
+  const Vector3 way = ground.later[static_cast<std::size_t>(phase)].tool_m - from;
+  const int axis = std::abs(way.x()) > std::abs(way.y()) ? 0 : 1;
+  return {axis, std::copysign(1.0, way[axis]), from + 0.5 * way};
 }
 
 }  // namespace
@@ -102,8 +116,6 @@ double Ground::force_most_N(double blind_s) const {
 DrivenRun::Altered DrivenRun::altered(const Ground& ground, const FaultKind& kind,
                                       FaultPhase phase) {
   Altered world{ground.cell, ground.planned.task};
-  const Ground::Moment& from = ground.begins[static_cast<std::size_t>(phase)];
-  const Ground::Moment& to = ground.later[static_cast<std::size_t>(phase)];
   if (kind.act == Act::kJointLimit) {
     const auto way = ground.way_on(phase).value();
     Joint& joint = world.cell.robot.joints[way.joint];
@@ -111,12 +123,11 @@ DrivenRun::Altered DrivenRun::altered(const Ground& ground, const FaultKind& kin
   }
   if (kind.act == Act::kObstacle) {
     constexpr double kEdge_m = 0.05;
-    const Vector3 way = to.tool_m - from.tool_m;
-    const int axis = std::abs(way.x()) > std::abs(way.y()) ? 0 : 1;
+    const Meeting meeting = meeting_in(ground, phase);
     Shape post{"post", Shape::Kind::kBox, Vector3::Constant(kEdge_m), {}};
-    post.pose.position_m = from.tool_m + 0.5 * way;
-    post.pose.position_m[axis] +=
-        std::copysign(0.5 * (world.task.held.front().size_m[axis] + kEdge_m), way[axis]);
+    post.pose.position_m = meeting.tool_m;
+    post.pose.position_m[meeting.axis] +=
+        meeting.sign * 0.5 * (world.task.held.front().size_m[meeting.axis] + kEdge_m);
     post.pose.position_m.z() = 0.05;
     world.task.environment.push_back(post);
   }
@@ -134,7 +145,11 @@ DrivenRun::DrivenRun(const Ground& ground, const FaultKind& kind, const Strike& 
              [this] { return run_.result().truth; }),
       run_(world_.cell, world_.task, ground.planned.plan, options(ground), &watch_),
       third_(run_.bus().attach()),
-      rest_(world_.cell.robot) {}
+      rest_(world_.cell.robot) {
+  if (kind.act != Act::kObstacle) return;
+  const Meeting meeting = meeting_in(ground, strike.phase);
+  watch_.expect_post(meeting.axis, meeting.sign, meeting.tool_m[meeting.axis]);
+}
 
 void DrivenRun::drive() {
   if (kind_.act == Act::kPause || kind_.act == Act::kLate) {

@@ -18,10 +18,19 @@ std::string promise_of(const FaultKind& kind) {
   return all.empty() ? "ridden out" : all;
 }
 
+// A contact is decided within its debounce, and at rest within half a second.
+constexpr double kTouchJudged_s = 0.6;
+
 /// In cycles from when the fault can be seen; what no time bounds is bounded by the run's end.
 std::int64_t most_cycles(const FaultRow& row, const Robot& robot) {
+  if (row.reason == EndReason::kPlanFailed) {
+    return static_cast<std::int64_t>(kTouchJudged_s / (1e-6 * robot.cycle_us));
+  }
   return executor::bound_cycles(row, robot).value_or(std::numeric_limits<std::int64_t>::max());
 }
+
+/// Named with the way to rest still before it.
+bool is_foreseen(const FaultRow& row) { return row.reason == EndReason::kJointLimit; }
 
 void judge_named(Outcome& outcome, const DrivenRun& run, const FaultKind& kind,
                  const Ground& ground) {
@@ -34,9 +43,10 @@ void judge_named(Outcome& outcome, const DrivenRun& run, const FaultKind& kind,
   const std::int64_t most = row == nullptr ? 0 : most_cycles(*row, ground.cell.robot);
   outcome.text = row == nullptr ? "no row" : full_name(*row);
   if (since) outcome.text += format(" %lld", static_cast<long long>(took));
+  if (!since && row != nullptr && is_foreseen(*row)) outcome.text += " foreseen";
   if (std::find(kind.names.begin(), kind.names.end(), row) == kind.names.end()) {
     outcome.complaint = "promised: " + promise_of(kind) + "; " + run.result().reason;
-  } else if (since && (took < 1 || took > most)) {
+  } else if (since && (took > most || (took < 1 && !is_foreseen(*row)))) {
     outcome.complaint = format("took %lld cycles, at most %lld", static_cast<long long>(took),
                                static_cast<long long>(most));
   }
@@ -126,6 +136,10 @@ Outcome run_cell(const Ground& ground, const FaultKind& kind, FaultPhase phase,
   judge_end_state(outcome, run, kind, ground);
   if (run.watch().fastest() > 1.0 + 1e-6) {
     outcome.complaint += format("; a joint was commanded %.3f of its speed", run.watch().fastest());
+  }
+  if (run.watch().beyond_limit() > 0.0) {
+    outcome.complaint +=
+        format("; commanded %g beyond a joint's limit", run.watch().beyond_limit());
   }
   if (kind.act != Act::kKill && !run.black_box_is_whole()) {
     outcome.complaint += "; the black box is not whole";

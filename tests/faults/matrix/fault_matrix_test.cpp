@@ -34,6 +34,8 @@ struct Subject {
   const char* twin = "";  ///< what its drives answer like, a file of tests/twins; empty: the book
   const char* plan_of = "";  ///< the cell that its plan was made for; empty: its own
   std::size_t first = 0;     ///< kind of its sample
+  /// Without any detector, too, each fault strikes in every phase, not in one.
+  bool blind_in_all = false;
 };
 
 /// A cell of a robot's matrix, run once for all tests.
@@ -163,10 +165,14 @@ TEST_P(FaultMatrix, WithAllDetectorsMaskedEveryFaultIsMissed) {
   std::size_t next = 0;
   int missed = 0;
   for (const FaultKind& kind : kinds) {
-    missed += is_missed(kind, kPhases[next++ % std::size(kPhases)]) ? 1 : 0;
+    if (!GetParam().blind_in_all) {
+      missed += is_missed(kind, kPhases[next++ % std::size(kPhases)]) ? 1 : 0;
+      continue;
+    }
+    for (const FaultPhase phase : kPhases) missed += is_missed(kind, phase) ? 1 : 0;
   }
   std::printf("%s: %d faults are missed\n", robot(), missed);
-  EXPECT_GT(missed, 15);
+  EXPECT_GT(missed, GetParam().blind_in_all ? 60 : 15);
 }
 
 // What the two before show for all, for some: every kind in one phase, and every third of them
@@ -217,9 +223,11 @@ constexpr Subject kOtherArms[] = {
     {.cell = "lwa4p", .twin = "lwa4p", .first = 1},
     {.cell = "epos4", .twin = "epos4", .plan_of = "gantry3", .first = 2}};
 
-INSTANTIATE_TEST_SUITE_P(Tree, FaultMatrix, ::testing::Values(Subject{.cell = "gantry3"}),
+INSTANTIATE_TEST_SUITE_P(Tree, FaultMatrix,
+                         ::testing::Values(Subject{.cell = "gantry3", .blind_in_all = true}),
                          subject_name);
-INSTANTIATE_TEST_SUITE_P(SixAxes, FaultMatrix, ::testing::Values(Subject{.cell = "csp6"}),
+INSTANTIATE_TEST_SUITE_P(SixAxes, FaultMatrix,
+                         ::testing::Values(Subject{.cell = "csp6", .blind_in_all = true}),
                          subject_name);
 INSTANTIATE_TEST_SUITE_P(Full, FaultMatrix, ::testing::ValuesIn(kOtherArms), subject_name);
 INSTANTIATE_TEST_SUITE_P(Tree, FaultSample, ::testing::ValuesIn(kOtherArms), subject_name);

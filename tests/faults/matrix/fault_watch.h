@@ -33,6 +33,9 @@ class FaultWatch final : public executor::CycleSink {
     window_ = static_cast<std::size_t>(std::ceil(lags)) + 4;
   }
 
+  /// Something stands in the way of the tool: it is met there. @param sign of the way to it
+  void expect_post(int axis, double sign, double at_m) { post_ = Post{axis, sign, at_m}; }
+
   /// The fault has struck: in the cycle that is over, or will do so in the next.
   void struck(bool in_the_last) {
     if (struck_) return;
@@ -47,10 +50,10 @@ class FaultWatch final : public executor::CycleSink {
     const bool on = r.arm_state == ArmState::kEnabled && r.request == ArmRequest::kEnabled;
     if (struck_ && on && !followed_) followed_ = cycles_;
     if (r.state == executor::State::kTaring && !taring_) taring_ = cycles_;
-    for (std::size_t i = 0; on && was_on_ && i < robot_.joints.size(); ++i) {
-      const double way = std::abs(r.position_commanded[i] - commands_.front()[i]);
-      const double most = 1e-6 * robot_.cycle_us * robot_.joints[i].speed_max;
-      fastest_ = std::max(fastest_, way / most);
+    if (on && was_on_) look_at_commands(r);
+    if (struck_ && post_ && !met_) {
+      const double tool_m = truth_().tool.position_m[post_->axis];
+      if (post_->sign * (tool_m - post_->at_m) >= -kMet_m) met_ = cycles_;
     }
     was_on_ = on;
     commands_.push_front(r.position_commanded);
@@ -72,6 +75,9 @@ class FaultWatch final : public executor::CycleSink {
     const executor::EndReason reason = row.reason;
     if (reason == kFollowingError) return behind_;
     if (reason == kBrakeFailed) return off_;
+    // Of these a joint's way to rest, at its own acceleration, and the truth tell.
+    if (reason == kJointLimit) return past_;
+    if (reason == kPlanFailed) return met_;
     // Setpoints count from where drives follow them.
     if (row.arm_fault == ArmFaultKind::kSetpointNotFinite) return followed_;
     // Later than the tare's, drift is felt as a force.
@@ -85,8 +91,7 @@ class FaultWatch final : public executor::CycleSink {
     if (reason == kForceFault) return forged ? struck_ : pressed_;
     const bool of_wrench = reason == kTorqueFault || reason == kSensorSaturated ||
                            row.arm_fault == ArmFaultKind::kSensorInvalid;
-    const bool inside = reason == kJointLimit || reason == kPlanFailed || reason == kTareMoving ||
-                        reason == kNotHeld;
+    const bool inside = reason == kTareMoving || reason == kNotHeld;
     return inside || (of_wrench && !of_sensor_) ? std::nullopt : struck_;
   }
   [[nodiscard]] std::optional<std::int64_t> named() const { return named_; }
@@ -95,6 +100,8 @@ class FaultWatch final : public executor::CycleSink {
   [[nodiscard]] std::optional<std::int64_t> over() const { return over_; }
   /// The greatest speed commanded to an enabled joint, of its own.
   [[nodiscard]] double fastest() const { return fastest_; }
+  /// By which a command to an enabled joint was beyond its limits at most, m or rad.
+  [[nodiscard]] double beyond_limit() const { return beyond_limit_; }
   [[nodiscard]] bool has_struck() const { return struck_.has_value(); }
   [[nodiscard]] std::int64_t cycles() const { return cycles_; }
   /// Cycles for which the fault may have acted while the drives were on.
@@ -106,6 +113,26 @@ class FaultWatch final : public executor::CycleSink {
   [[nodiscard]] sim::Truth truth_held() const { return held_ ? *held_ : truth_(); }
 
  private:
+  static constexpr double kMet_m = 5e-5;
+
+  struct Post {
+    int axis = 0;
+    double sign = 0.0;
+    double at_m = 0.0;
+  };
+
+  void look_at_commands(const executor::CycleRecord& r) {
+    const double cycle_s = 1e-6 * robot_.cycle_us;
+    for (std::size_t i = 0; i < robot_.joints.size(); ++i) {
+      const Joint& joint = robot_.joints[i];
+      const double at = r.position_commanded[i];
+      const double speed = (at - commands_.front()[i]) / cycle_s;
+      fastest_ = std::max(fastest_, std::abs(speed) / joint.speed_max);
+      beyond_limit_ = std::max({beyond_limit_, at - joint.upper, joint.lower - at});
+      const double rest = at + speed * std::abs(speed) / (2.0 * joint.acceleration_max);
+      if ((rest > joint.upper || rest < joint.lower) && !past_ && !named_) past_ = cycles_;
+    }
+  }
   void look_while_held(const executor::CycleRecord& r) {
     const sim::Truth truth = truth_();
     const bool on = std::all_of(truth.drives.begin(), truth.drives.end(),
@@ -150,6 +177,10 @@ class FaultWatch final : public executor::CycleSink {
   std::optional<sim::Truth> held_;
   bool was_on_ = false;
   double fastest_ = 0.0;
+  double beyond_limit_ = 0.0;
+  std::optional<Post> post_;
+  std::optional<std::int64_t> met_;   ///< the post, by the truth
+  std::optional<std::int64_t> past_;  ///< its limit a joint could not stop before any more
   bool of_sensor_;
   std::function<sim::Truth()> truth_;
   std::size_t window_;
