@@ -170,10 +170,14 @@ double Scene::overlap_m() {
   look_where();
   double overlap_m = 0.0;
   PairPoints buffer;
-  for (const Watched& watched : watched_) {
+  for (Watched& watched : watched_) {
+    if (watched.apart_until_m > moved_m_) continue;
     const ShapeGeometry& held = held_[watched.pair.held];
     const ShapeGeometry& environment = environment_[watched.pair.environment];
-    if (held.separation_m(environment) > 0.0) continue;
+    if (const double apart_m = held.separation_m(environment); apart_m > 0.0) {
+      watched.apart_until_m = moved_m_ + apart_m;
+      continue;
+    }
     if (watched.surfaces) {
       std::vector<dContactGeom> points;
       touch_surfaces(watched, points);

@@ -81,35 +81,33 @@ Pose ShapeGeometry::pose() const {
   return {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
 }
 
-double ShapeGeometry::half_extent_m(const Vector3& way) const {
-  const Vector3 half_m = 0.5 * (shape_.size_m + Vector3::Constant(oversize_m_));
-  const dReal* rotation = dGeomGetRotation(geometry_);
-  const Vector3 along(axis_of(rotation, 0).dot(way), axis_of(rotation, 1).dot(way),
-                      axis_of(rotation, 2).dot(way));
-  switch (shape_.kind) {
-    case Shape::Kind::kBox:
-    case Shape::Kind::kSolid:
-      return half_m.dot(along.cwiseAbs());
-    case Shape::Kind::kCylinder:
-      return half_m.x() * along.head<2>().norm() + half_m.z() * std::abs(along.z());
-  }
-  return 0.0;
+Vector3 ShapeGeometry::half_m() const {
+  return 0.5 * (shape_.size_m + Vector3::Constant(oversize_m_));
+}
+
+Eigen::Matrix3d ShapeGeometry::axes() const {
+  using Rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+  return Eigen::Map<const Rows>(dGeomGetRotation(geometry_)).leftCols<3>();
+}
+
+Vector3 ShapeGeometry::half_along_m(const Eigen::Matrix3d& ways) const {
+  const Vector3 half = half_m();
+  if (shape_.kind != Shape::Kind::kCylinder) return ways.cwiseAbs() * half;
+  return half.x() * ways.leftCols<2>().rowwise().norm() + half.z() * ways.col(2).cwiseAbs();
 }
 
 double ShapeGeometry::separation_m(const ShapeGeometry& other) const {
   const dReal* a = dGeomGetPosition(geometry_);
   const dReal* b = dGeomGetPosition(other.geometry_);
   const Vector3 between_m(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-  double apart_m = -std::numeric_limits<double>::infinity();
-  for (const ShapeGeometry* shape : {this, &other}) {
-    const dReal* rotation = dGeomGetRotation(shape->geometry_);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vector3 way = axis_of(rotation, axis);
-      apart_m = std::max(
-          apart_m, std::abs(way.dot(between_m)) - half_extent_m(way) - other.half_extent_m(way));
-    }
-  }
-  return apart_m;
+  const Eigen::Matrix3d own = axes();
+  const Eigen::Matrix3d its = other.axes();
+  const Eigen::Matrix3d its_in_own = own.transpose() * its;
+  const Vector3 along_own = (own.transpose() * between_m).cwiseAbs();
+  const Vector3 along_its = (its.transpose() * between_m).cwiseAbs();
+  const Vector3 own_gaps = along_own - half_m() - other.half_along_m(its_in_own);
+  const Vector3 its_gaps = along_its - other.half_m() - half_along_m(its_in_own.transpose());
+  return std::max(own_gaps.maxCoeff(), its_gaps.maxCoeff());
 }
 
 std::optional<ShapeGeometry::AxesInCommon> ShapeGeometry::axes_in_common(
@@ -130,18 +128,18 @@ std::optional<ShapeGeometry::AxesInCommon> ShapeGeometry::axes_in_common(
 }
 
 Prism ShapeGeometry::prism(int axis) const {
-  const Vector3 half_m = 0.5 * (shape_.size_m + Vector3::Constant(oversize_m_));
+  const Vector3 half = half_m();
   const dReal* centre = dGeomGetPosition(geometry_);
   const dReal* rotation = dGeomGetRotation(geometry_);
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
   return {.centre_m = {centre[0], centre[1], centre[2]},
           .axis = axis_of(rotation, axis),
-          .half_length_m = half_m[axis],
+          .half_length_m = half[axis],
           .u = axis_of(rotation, u),
           .v = axis_of(rotation, v),
-          .half_u_m = half_m[u],
-          .half_v_m = half_m[v],
+          .half_u_m = half[u],
+          .half_v_m = half[v],
           .round = shape_.kind == Shape::Kind::kCylinder};
 }
 

@@ -60,8 +60,12 @@ class ShapeGeometry {
   [[nodiscard]] double reach_m() const;
 
  private:
-  /// Half of what the shape measures along a direction of the world, a unit vector.
-  [[nodiscard]] double half_extent_m(const Vector3& way) const;
+  /// Half of its size as it is, along its own axes.
+  [[nodiscard]] Vector3 half_m() const;
+  /// Its axes in the world, a column each.
+  [[nodiscard]] Eigen::Matrix3d axes() const;
+  /// Half of what it measures along three directions. @param ways in its axes, a unit vector a row
+  [[nodiscard]] Vector3 half_along_m(const Eigen::Matrix3d& ways) const;
 
   Shape shape_;
   double oversize_m_ = 0.0;
