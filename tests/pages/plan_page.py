@@ -65,6 +65,13 @@ def look_at(browser, file, fragment, webgl, failures, pictures, served=None):
                 browser.picture(pictures / f"{name}.png")
 
 
+def opening_s(browser, file):
+    """From the address to a page that can be used, as the page's own clock says when it is asked."""
+    browser.open(file)
+    browser.wait_for(f"{ROOT}.ready === 'true'")
+    return 1e-3 * browser.evaluate("performance.now()")
+
+
 def press(browser, key):
     for kind in ("keyDown", "keyUp"):
         browser.call("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=0)
@@ -135,6 +142,9 @@ def main(failures):
         for webgl in (True, False):
             with Browser(webgl) as browser:
                 for file in files:
+                    seconds = [opening_s(browser, file) for _ in range(3)]
+                    print(f"{file.name}: open within {min(seconds):.2f} s, at worst {max(seconds):.2f} s,"
+                          f" {'WebGL' if webgl else 'SVG'}")
                     look_at(browser, file, "#step=1.5", webgl, failures, arguments.pictures)
                 play(browser, files[0], failures)
                 if webgl:

@@ -57,7 +57,7 @@ class EvaluationPage {
       keyOf("goal", "goal"),
       keyOf("contact", "touched"),
     );
-    if (hasWebGl()) legend.append(box("cut", "environment", "cut open"));
+    if (HAS_WEB_GL) legend.append(box("cut", "environment", "cut open"));
     this.filters = element("div", { class: "filters", role: "group", "aria-label": "Runs that are shown" });
     this.stage = new Stage(host, this.data, [this.filters, this.player.controls], legend);
     this.buildFilters();

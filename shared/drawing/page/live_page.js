@@ -62,7 +62,7 @@ class LivePage {
       keyOf("contact", "touched"),
     );
     if (this.data.nominal) legend.append(keyOf("muted", "where the robot believes it to be"));
-    if (hasWebGl()) {
+    if (HAS_WEB_GL) {
       legend.append(optionBox(this.options, "cut", "environment", "cut open", () => this.draw()));
     }
     this.stage = new Stage(host, this.data, [], legend);

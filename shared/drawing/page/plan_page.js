@@ -64,7 +64,7 @@ class PlanPage {
       keyOf("goal", "goal"),
       keyOf("contact", "touched"),
     );
-    if (hasWebGl()) legend.append(box("cut", "environment", "cut open"));
+    if (HAS_WEB_GL) legend.append(box("cut", "environment", "cut open"));
     this.nameFront();
     return legend;
   }

@@ -118,7 +118,7 @@ class RunPage {
       count ? keyOf("goal", "goal") : null,
       this.run.fit ? box("fit", "ink", "moved onto the goal") : null,
     );
-    if (hasWebGl() && count) legend.append(box("cut", "environment", "cut open"));
+    if (HAS_WEB_GL && count) legend.append(box("cut", "environment", "cut open"));
     this.stage = new Stage(host, this.data, [this.player.controls], legend);
     this.heading = element("h2", {});
     this.words = element("div", { class: "words", "aria-live": "polite" });

@@ -35,7 +35,7 @@ class ScenePicture {
     this.host = host;
     this.data = data;
     const bounds = boundsOf(data);
-    this.space = hasWebGl();
+    this.space = HAS_WEB_GL;
     this.scene = this.space
       ? new GlScene(host, data, bounds, colours())
       : new SvgScene(host, data, bounds, colours());

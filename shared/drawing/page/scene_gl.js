@@ -1,12 +1,13 @@
 // The scene in space, drawn by WebGL with an orthographic camera, in millimetres.
 
-function hasWebGl() {
+// Asked once: where no graphics card is, a context takes a tenth of a second.
+const HAS_WEB_GL = (() => {
   try {
     return Boolean(document.createElement("canvas").getContext("webgl2"));
   } catch {
     return false;
   }
-}
+})();
 
 class GlScene {
   constructor(host, data, bounds, palette) {
@@ -343,13 +344,24 @@ class GlScene {
     this.height = height;
     this.renderer.setSize(width, height);
     if (this.reach) this.frame();
+    // What there was, setSize has cleared.
+    if (this.painted) this.paint();
   }
 
+  // Once a frame, however much has changed: building a scene changes most of it several times over.
   render() {
+    if (!this.asked) this.asked = requestAnimationFrame(() => this.paint());
+  }
+
+  paint() {
+    cancelAnimationFrame(this.asked);
+    this.asked = 0;
+    this.painted = true;
     if (this.width) this.renderer.render(this.scene, this.camera);
   }
 
   dispose() {
+    cancelAnimationFrame(this.asked);
     this.controls.dispose();
     this.renderer.dispose();
     this.canvas.remove();
