@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
-"""How-tos, typed word by word, one after the other in one folder: their ```yaml blocks are saved under the name in their first line, its ```sh blocks are
-run in order, and every line of the ``` block that follows one must begin a line of what was printed.
+"""How-tos, typed word by word, one after the other in one folder: their ```yaml blocks are saved under the name in
+their first line, their ```sh blocks are run in order, and every line of the ``` block that follows one must begin a
+line of what was printed.
 
   typed.py BIN SOURCE HOWTO...     in a network namespace of its own, where all ports are free
 
 A run in real time that ended because the machine was too busy is made again.
 """
+import contextlib
 import json
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -29,18 +32,30 @@ def was_too_busy(folder):
     return said.get("arm_fault", said.get("reason", "")) in EXCUSES
 
 
+def run_in_bash(text, folder, environment):
+    """@return the exit status and what was printed. What a failed line leaves running in the background is ended."""
+    with tempfile.TemporaryFile("w+") as said:
+        bash = subprocess.Popen(["bash", "-e", "-c", text], cwd=folder, env=environment, stdout=said,
+                                stderr=subprocess.STDOUT, start_new_session=True)
+        status = bash.wait()
+        if status != 0:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(bash.pid, signal.SIGKILL)
+        said.seek(0)
+        return status, said.read()
+
+
 def type_in(text, folder, environment):
     """@return what it printed"""
     runs = "--can" in text
     for attempt in range(1, ATTEMPTS + 1):
         for left in ("ready", "result.json") if runs else ():
             (folder / left).unlink(missing_ok=True)
-        ended = subprocess.run(["bash", "-e", "-c", text], cwd=folder, env=environment, text=True,
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        if ended.returncode == 0:
-            return ended.stdout
+        status, said = run_in_bash(text, folder, environment)
+        if status == 0:
+            return said
         if not runs or not was_too_busy(folder):
-            raise SystemExit(f"FAILED: status {ended.returncode} of\n{text}\n{ended.stdout}")
+            raise SystemExit(f"FAILED: status {status} of\n{text}\n{said}")
         print(f"attempt {attempt}: the machine was too busy")
         time.sleep(attempt)
     raise SystemExit(f"FAILED: always too busy for\n{text}")
