@@ -139,6 +139,17 @@ RunResult common_result(const ControlTask& task, const Plan& plan, const CycleRu
   return result;
 }
 
+// A loop that wakes up later than the plan's latency allows sees contacts, and their end, too late:
+// what follows is no fault of the plan or the parts. Empty where it never did.
+std::string lateness(const Plan& plan, const Cell& cell, const CycleRunner::Statistics& loop) {
+  const double late_ms = 1e-3 * loop.wakeup.max_us();
+  const double allowed_ms =
+      std::max(1e-3 * cell.robot.cycle_us, 1e3 * (plan.latency_max_s - latency_s(cell.robot)));
+  if (late_ms <= allowed_ms) return {};
+  return format("; the loop woke up %.3g ms late, where the plan allows %.3g ms: that may be why",
+                late_ms, allowed_ms);
+}
+
 // The drives have the last word.
 void conclude(RunResult& result, const ControlTask& task, bool success) {
   const bool named = result.reason == EndReason::kNotDisabled;
@@ -185,6 +196,9 @@ RunResult gather_result(const Controller& controller, const CycleRunner& runner,
   RunResult result = common_result(controller, plan, runner, records_dropped, arm_fault_text);
   result.task = plan.task_name;
   result.start = plan.start_name;
+  if (result.reason == EndReason::kPlanFailed || result.reason == EndReason::kNotAtGoal) {
+    result.message += lateness(plan, controller.cell(), result.statistics);
+  }
   for (std::size_t i = 0; i < controller.runner().report_count(); ++i) {
     result.steps.push_back(controller.runner().report(i));
   }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <string>
 
+#include "executor/telemetry/run_result.h"
 #include "tests/support/faulty_options.h"
 #include "tests/support/planned.h"
 #include "tests/support/whole_run.h"
@@ -58,6 +60,23 @@ TEST(LateLoop, ALoopThatIsLateAgainAndAgainIsEndedByName) {
               result.ending.reason == EndReason::kBlind)
       << result.reason;
   for (const auto& drive : result.truth.drives) EXPECT_TRUE(drive.brake_engaged) << drive.joint;
+}
+
+// The table is where the plan does not look. That a late loop may be why is said where it was one.
+TEST(LateLoop, APlanThatFailsSaysSoOfALoopThatWasLate) {
+  WholeRun::Options options = with_faults({});
+  options.offset << 0.3, 0.3, 0.0, 0.0, 0.0, 0.0;
+  for (const double late_ms : {0.0, 1.5, 7.0}) {
+    WholeRun run(gantry_cell(), box_task(), box_plan("1"), options);
+    (void)run.run_on_clock([&](std::int64_t due_ns) {
+      const bool at_work = due_ns / kCycle_ns == 3000;
+      return at_work ? static_cast<std::int64_t>(late_ms * kMillisecond_ns) : std::int64_t{0};
+    });
+    const auto result = executor::gather_result(run.controller(), run.runner(), 0, "");
+    EXPECT_EQ(result.reason, EndReason::kPlanFailed) << result.message;
+    const bool said = result.message.find("; the loop woke up 7 ms late") != std::string::npos;
+    EXPECT_EQ(said, late_ms > 2.0) << result.message;
+  }
 }
 
 // Its time is past before the run ends, and no cycle would have followed.
