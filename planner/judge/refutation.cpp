@@ -1,6 +1,7 @@
 #include "planner/judge/refutation.h"
 
 #include "shared/base/text.h"
+#include "shared/task/spread.h"
 
 namespace tenon::planner {
 
@@ -16,7 +17,7 @@ Refutation refutation_of(const Certification& certification) {
 
 Refutation refutation_of(const Draw& missed, const Task& task) {
   return {missed.chain, std::nullopt,
-          format("a start %.2f sigma out missed the goal at ", missed.sigmas_out) +
+          "a start " + out_text(task, missed.sigmas_out) + " missed the goal at " +
               corner_name(missed.chain.start.physics, task)};
 }
 

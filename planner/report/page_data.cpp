@@ -12,6 +12,7 @@
 #include "planner/report/touched.h"
 #include "shared/drawing/scene_json.h"
 #include "shared/drawing/step_words.h"
+#include "shared/task/spread.h"
 
 namespace tenon::planner {
 namespace {
@@ -96,7 +97,7 @@ std::string page_json(const ReportData& data) {
   json["draws"] = Json::array();
   for (const Draw& draw : data.validation.draws) {
     Json entry = json_of(data, draw.chain);
-    entry["sigmas"] = rounded(draw.sigmas_out);
+    entry["out"] = out_text(data.task, draw.sigmas_out);
     entry["at_goal"] = draw.at_goal;
     json["draws"].push_back(std::move(entry));
   }

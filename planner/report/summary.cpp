@@ -86,7 +86,7 @@ std::vector<std::string> missed(const PlanReport& report, const Task& task) {
                      shown(chain.end().orientation.angularDistance(task.goal.orientation), 3)) +
                   (inserted(task, chain.end()) ? "" : ", not inserted")
             : format("step %zu: ", chain.steps.back()) + chain.failure;
-    lines.push_back(format("%.2f sigma out, ", draw.sigmas_out) + what);
+    lines.push_back(out_text(task, draw.sigmas_out) + ", " + what);
   }
   return lines;
 }

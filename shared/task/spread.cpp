@@ -29,6 +29,12 @@ std::string reach_text(const Task& task) {
              : format("%g standard deviations out", task.particle_sigmas);
 }
 
+std::string out_text(const Task& task, double sigmas) {
+  return task.errors == Distribution::kUniform
+             ? format("at %.0f %% of the bounds", 100.0 * sigmas / task.particle_sigmas)
+             : format("%.2f sigma out", sigmas);
+}
+
 const char* error_key(const Task& task, int axis) {
   if (task.errors == Distribution::kUniform) return axis < 3 ? "uniform_m" : "uniform_rad";
   return axis < 3 ? "sigma_m" : "sigma_rad";

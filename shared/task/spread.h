@@ -18,6 +18,9 @@ namespace tenon {
 /// "3 standard deviations out", "at the bounds".
 [[nodiscard]] std::string reach_text(const Task& task);
 
+/// Of a start: "1.73 sigma out", "at 87 % of the bounds".
+[[nodiscard]] std::string out_text(const Task& task, double sigmas);
+
 /// The task file's key of a coordinate's error, "sigma_m" or "uniform_rad", and what it says there.
 [[nodiscard]] const char* error_key(const Task& task, int axis);
 [[nodiscard]] double stated_error(const Task& task, const Start& start, int axis);

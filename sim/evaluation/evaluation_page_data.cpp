@@ -12,6 +12,7 @@
 
 #include "shared/drawing/scene_json.h"
 #include "shared/drawing/step_words.h"
+#include "shared/task/spread.h"
 
 namespace tenon::sim {
 namespace {
@@ -70,7 +71,6 @@ Json run_json(const Task& task, const std::vector<OutcomeKey>& outcomes, const R
   }
   return {{"run", run.trial.number},
           {"outcome", index_of(outcomes, run.result)},
-          {"sigmas", rounded(run.trial.distance, 2)},
           {"beyond", run.trial.distance > task.particle_sigmas},
           {"path", std::move(path)}};
 }
@@ -100,11 +100,11 @@ Json moments_json(const std::vector<Moment>& moments) {
   return json;
 }
 
-Json recording_json(const std::vector<OutcomeKey>& outcomes, const Run& run,
+Json recording_json(const Task& task, const std::vector<OutcomeKey>& outcomes, const Run& run,
                     const Recording& recording) {
   Json json = {{"run", run.trial.number},
                {"outcome", index_of(outcomes, run.result)},
-               {"sigmas", rounded(run.trial.distance, 2)},
+               {"out", out_text(task, run.trial.distance)},
                {"reason", run.result.reason},
                {"step", run.result.step},
                {"step_outcome", run.result.outcome},
@@ -148,7 +148,8 @@ Json plan_json(const Task& task, const std::vector<OutcomeKey>& outcomes,
   }
   json["recordings"] = Json::array();
   for (const auto& [number, recording] : candidate.recordings) {
-    json["recordings"].push_back(recording_json(outcomes, candidate.runs.at(number), recording));
+    json["recordings"].push_back(
+        recording_json(task, outcomes, candidate.runs.at(number), recording));
   }
   return json;
 }

@@ -70,11 +70,13 @@ TEST(TaskErrors, UniformOnesReachToTheirBounds) {
   EXPECT_NEAR(task.particle_sigmas * start.sigma[2], 0.02, 1e-15);
   EXPECT_NEAR(sigmas_out(task, start, start.sigma), 1.0, 1e-12);
   EXPECT_EQ(drawn_sigmas(task), task.particle_sigmas);
+  EXPECT_EQ(out_text(task, 0.5 * task.particle_sigmas), "at 50 % of the bounds");
 
   const Task other = load(folder, "");
   EXPECT_NEAR(sigmas_out(other, other.starts[0], other.starts[0].sigma), std::numbers::sqrt2,
               1e-12);
   EXPECT_EQ(drawn_sigmas(other), other.particle_sigmas + 1.0);
+  EXPECT_EQ(out_text(other, 1.732), "1.73 sigma out");
 
   EXPECT_EQ(
       refused(folder, "sigma_m: [0.01, 0.01]}", "sigma_m: [0.01, 0.01], uniform_m: [0.01, 0.01]}",

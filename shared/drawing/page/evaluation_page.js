@@ -237,8 +237,7 @@ class EvaluationPage {
   ending(entry) {
     const lines = [element("p", { class: "move" }, entry.reason)];
     lines[0].classList.toggle("long", entry.reason.length > 60);
-    const where = this.data.reach_is_bounds ? "" : `${entry.sigmas.toFixed(2)}σ`;
-    lines.push(termLine("Start off by", where || `${entry.sigmas.toFixed(2)} of the deviation`));
+    lines.push(termLine("Start", entry.out));
     if (entry.error_m !== undefined) {
       const tolerance = amount(this.data.goal_tolerance_m, 0);
       lines.push(termLine("From the goal", `${amount(entry.error_m, 0)} (${tolerance} allowed)`));

@@ -72,9 +72,7 @@ class PlanPage {
   nameFront() {
     const chain = this.focus;
     this.frontText.textContent =
-      chain.sigmas === undefined
-        ? "particle 0"
-        : `random start ${this.data.draws.indexOf(chain)}, ${chain.sigmas.toFixed(1)}σ out`;
+      chain.out === undefined ? "particle 0" : `random start ${this.data.draws.indexOf(chain)}, ${chain.out}`;
   }
 
   another() {
