@@ -2,7 +2,7 @@
 """Plans every shipped task from every start in every variant but #paper, and has the virtual arm execute each
 plan at the corners of what the task leaves open: friction low or high, the part as drawn or its largest.
 
-  evaluate_corners.py --out FOLDER [--seed S] [--runs N] [--only PART] [--bin FOLDER]
+  evaluate_corners.py --seed S --out FOLDER [--runs N] [--only PART] [--bin FOLDER]
 
 The cell is the first shipped one that a plan is found for; all else differs from the planner's world as the
 experiment of box_on_table (a box) or peg_in_hole (what goes into something) says. A corner holds where 99 % of
@@ -10,13 +10,11 @@ the runs within the planned reach succeed. FOLDER keeps plans and runs: started 
 made. Take another folder for another build.
 """
 
-import argparse
 import pathlib
 import re
-import sys
 
-from planned_and_run import evaluate, plan, print_failures
-from plan_times import ROOT, TASKS, starts
+from planned_and_run import ROOT, evaluate, options, parsed, plan, print_failures
+from plan_times import TASKS, starts
 
 CELLS = ["gantry3", "gantry3_peg", "csp6_bench", "csp6_peg", "csp6"]
 
@@ -99,18 +97,7 @@ def measure(task, start, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--seed", type=int, default=1, help="of the runs")
-    parser.add_argument("--runs", type=int, default=200, help="at each corner")
-    parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--time-limit", type=float, default=300.0)
-    parser.add_argument("--only", default="", help="tasks with this in their name")
-    parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build" / "release" / "bin")
-    parser.add_argument("--out", type=pathlib.Path, required=True)
-    arguments = parser.parse_args()
-    if not (arguments.bin / "tenon-plan").exists():
-        sys.exit(f"evaluate_corners: {arguments.bin} holds no tenon-plan: build the preset release, or --bin")
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    arguments = parsed(options(__doc__))
     rows = [measure(t, s, arguments) for t, s in shipped() if arguments.only in pathlib.Path(t).name]
     print(
         f"{sum(held for _, held, _ in rows)} of {sum(run for run, *_ in rows)} corners hold, of"

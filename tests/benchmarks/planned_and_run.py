@@ -1,10 +1,36 @@
 """Plans a task and has the virtual arm execute the plan, each once: what is there already is read."""
 
+import argparse
 import json
+import pathlib
 import resource
 import subprocess
 import sys
 import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def options(description):
+    """The parser of what every such study is told; it may be told more."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--seed", type=int, required=True, help="of the runs, and of the tasks if they are drawn")
+    parser.add_argument("--runs", type=int, default=200, help="of a plan in a world")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--time-limit", type=float, default=300.0, help="of planning, s")
+    parser.add_argument("--only", default="", help="tasks with this in their name")
+    parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build" / "release" / "bin")
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    return parser
+
+
+def parsed(parser):
+    """Leaves with a line where there is nothing to plan with; makes the folder of results."""
+    arguments = parser.parse_args()
+    if not (arguments.bin / "tenon-plan").exists():
+        sys.exit(f"{arguments.bin} holds no tenon-plan: build the preset release, or --bin")
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    return arguments
 
 
 def plan(program, task, cell, stem, threads, time_limit_s, extra=()):

@@ -6,17 +6,16 @@
 The arm is gantry3_peg, its world differs from the planner's as peg_in_hole.yaml says. FOLDER keeps tasks,
 plans and runs: started again, only what is missing is made. Take another folder for another build. Planning
 times are seconds of one core and of the clock, on the machine as it is; reach is the task's own.
+--runs 0 only plans.
 """
 
-import argparse
 import pathlib
 import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from planned_and_run import evaluate, plan, print_failures  # noqa: E402
+from planned_and_run import ROOT, evaluate, options, parsed, plan, print_failures  # noqa: E402
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
 CELL = ROOT / "hw" / "cells" / "gantry3_peg.yaml"
 WORLD = ROOT / "sim" / "experiments" / "peg_in_hole.yaml"
 
@@ -61,16 +60,9 @@ def row(task, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--seed", type=int, required=True, help="of the tasks and of the runs")
-    parser.add_argument("--count", type=int, default=20)
-    parser.add_argument("--runs", type=int, default=200, help="of each plan; 0: plan only")
-    parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--time-limit", type=float, default=300.0)
-    parser.add_argument("--only", default="", help="tasks with this in their name")
-    parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build" / "release" / "bin")
-    parser.add_argument("--out", type=pathlib.Path, required=True)
-    arguments = parser.parse_args()
+    parser = options(__doc__)
+    parser.add_argument("--count", type=int, default=20, help="of tasks")
+    arguments = parsed(parser)
     draw = pathlib.Path(__file__).with_name("draw_tasks.py")
     command = [sys.executable, "-B", draw, "--out", arguments.out]
     command += ["--seed", str(arguments.seed), "--count", str(arguments.count)]
