@@ -29,18 +29,4 @@ Eigen::Quaterniond rotation_of(const Vector3& rotation_vector_rad) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, rotation_vector_rad / angle_rad));
 }
 
-Vector6 displacement_between(const Pose& from, const Pose& to) {
-  Vector6 displacement;
-  displacement.head<3>() = to.position_m - from.position_m;
-  displacement.tail<3>() = rotation_vector(to.orientation * from.orientation.conjugate());
-  return displacement;
-}
-
-Pose displaced(const Pose& pose, const Vector6& displacement) {
-  const Vector3 turn_rad = displacement.tail<3>();
-  if (turn_rad.isZero(0.0)) return {pose.position_m + displacement.head<3>(), pose.orientation};
-  return {pose.position_m + displacement.head<3>(),
-          (rotation_of(turn_rad) * pose.orientation).normalized()};
-}
-
 }  // namespace tenon

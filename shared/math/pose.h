@@ -34,9 +34,23 @@ struct Pose {
 
 /// The displacement that takes `from` to `to`: translation and rotation vector, both in the axes of
 /// the frame that the poses are given in (the rotation multiplies from the left).
-[[nodiscard]] Vector6 displacement_between(const Pose& from, const Pose& to);
+[[nodiscard]] inline Vector6 displacement_between(const Pose& from, const Pose& to) {
+  Vector6 displacement;
+  displacement.head<3>() = to.position_m - from.position_m;
+  if (to.orientation.coeffs() == from.orientation.coeffs()) {
+    displacement.tail<3>().setZero();
+  } else {
+    displacement.tail<3>() = rotation_vector(to.orientation * from.orientation.conjugate());
+  }
+  return displacement;
+}
 
 /// `pose` moved by a displacement as displacement_between() gives it.
-[[nodiscard]] Pose displaced(const Pose& pose, const Vector6& displacement);
+[[nodiscard]] inline Pose displaced(const Pose& pose, const Vector6& displacement) {
+  const Vector3 turn_rad = displacement.tail<3>();
+  if (turn_rad.isZero(0.0)) return {pose.position_m + displacement.head<3>(), pose.orientation};
+  return {pose.position_m + displacement.head<3>(),
+          (rotation_of(turn_rad) * pose.orientation).normalized()};
+}
 
 }  // namespace tenon

@@ -26,17 +26,23 @@ class Admittance {
 
   /// One step. @param wrench external, task axes at the tool tip, N and Nm  @param step_s > 0
   const State& update(const Setpoint& setpoint, const Vector6& wrench, double step_s) {
-    const Vector6 error = displacement_between(state_.pose, setpoint.pose);
-    for (int axis = 0; axis < 6; ++axis) {
-      state_.velocity[axis] = yields(axis)
-                                  ? next_velocity(axis, error[axis], setpoint, wrench[axis], step_s)
-                                  : error[axis] / step_s;
-    }
+    state_.velocity = next_velocity(setpoint, wrench, step_s);
     state_.pose = displaced(state_.pose, state_.velocity * step_s);
     return state_;
   }
 
   [[nodiscard]] const State& state() const { return state_; }
+  /// That update() would leave it with.
+  [[nodiscard]] Vector6 next_velocity(const Setpoint& setpoint, const Vector6& wrench,
+                                      double step_s) const {
+    const Vector6 error = displacement_between(state_.pose, setpoint.pose);
+    Vector6 velocity = error / step_s;
+    for (int axis = 0; axis < 6; ++axis) {
+      if (!yields(axis)) continue;
+      velocity[axis] = next_velocity(axis, error[axis], setpoint, wrench[axis], step_s);
+    }
+    return velocity;
+  }
   /// Where the tool comes to rest by its damping alone: M / D times its velocity from here.
   [[nodiscard]] Pose run_out() const {
     Vector6 way = Vector6::Zero();

@@ -19,6 +19,12 @@ void ContactDetector::update(std::int64_t time_ns, const Vector6& wrench, Contac
   weak_ = {};
   const double force_max_N = wrench.head<3>().cwiseAbs().maxCoeff();
   const double torque_max_Nm = wrench.tail<3>().cwiseAbs().maxCoeff();
+  // In free flight, as nearly always.
+  if (signature_.bits == 0 && force_max_N <= kStillCandidate * thresholds_.force_on_N &&
+      torque_max_Nm <= kStillCandidate * thresholds_.torque_on_Nm) {
+    pending_ = {};
+    return;
+  }
   for (int axis = 0; axis < 6; ++axis) {
     if ((watched_axes_ >> axis & 1U) == 0) continue;
     const double on = axis < 3 ? thresholds_.force_on_N : thresholds_.torque_on_Nm;

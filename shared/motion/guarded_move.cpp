@@ -116,7 +116,7 @@ void GuardedMove::advance(const Input& input) {
   if (input.wrench_fresh) {
     detector_.update(input.time_ns, input.wrench, kept());
     watch_resistance(input.wrench);
-    peak_force_N_ = std::max(peak_force_N_, input.wrench.head<3>().norm());
+    peak_force_N2_ = std::max(peak_force_N2_, input.wrench.head<3>().squaredNorm());
   }
   switch (phase_) {
     case Phase::kMoving:
@@ -312,7 +312,7 @@ void GuardedMove::finish(const Input& input) {
   result.travelled = displacement_between(first_.pose, input.pose);
   result.decided_ns = decided_ns_ - first_.time_ns;
   result.duration_ns = input.time_ns - first_.time_ns;
-  result.peak_force_N = peak_force_N_;
+  result.peak_force_N = std::sqrt(peak_force_N2_);
   result_ = result;
 }
 

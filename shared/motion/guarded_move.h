@@ -158,7 +158,7 @@ class GuardedMove {
   bool aligning_ = false;      ///< not at rest yet under the force of a probe
   ContactSignature pressing_;  ///< the contacts that the settling setpoint presses into
   Outcome outcome_ = Outcome::kTimeout;
-  double peak_force_N_ = 0.0;
+  double peak_force_N2_ = 0.0;  ///< squared
   std::optional<Result> result_;
 
   /// The last poses, to tell rest from motion through encoder quantisation.

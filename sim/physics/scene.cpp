@@ -68,9 +68,9 @@ Scene::Contacts Scene::find_contacts(bool turns) {
     if (watched.apart_until_m <= moved_m_) {
       const ShapeGeometry& held = held_[watched.pair.held];
       const ShapeGeometry& environment = environment_[watched.pair.environment];
-      const double apart_m = held.separation_m(environment);
+      const double apart_m = watched.met ? 0.0 : held.separation_m(environment);
       watched.apart_until_m = moved_m_ + std::max(0.0, apart_m);
-      if (apart_m <= 0.0) touch(watched, turns, buffer);
+      if (apart_m <= 0.0) watched.met = touch(watched, turns, buffer);
     }
     clear_until_m_ = std::min(clear_until_m_, watched.apart_until_m);
   }
@@ -90,8 +90,7 @@ void Scene::moved_anywhere() {
   moved_m_ = 0.0;
   seen_m_ = 0.0;
   clear_until_m_ = 0.0;
-  points_.clear();
-  touching_.clear();
+  forget_meetings();
 }
 
 void Scene::placed() {
@@ -99,6 +98,11 @@ void Scene::placed() {
   constexpr double kLongWay_m = 100.0;
   if (moved_m_ > kLongWay_m) return moved_anywhere();
   look_where();
+  forget_meetings();
+}
+
+void Scene::forget_meetings() {
+  for (Watched& watched : watched_) watched.met = false;
   points_.clear();
   touching_.clear();
 }
@@ -117,15 +121,16 @@ Pose Scene::body_pose() const {
   return body == nullptr ? held_.front().pose() : pose_of(body);
 }
 
-void Scene::touch(Watched& watched, bool turns, PairPoints& buffer) {
+bool Scene::touch(Watched& watched, bool turns, PairPoints& buffer) {
   const ShapeGeometry& held = held_[watched.pair.held];
   const ShapeGeometry& environment = environment_[watched.pair.environment];
   std::span<const dContactGeom> found;
   if (watched.surfaces) {
     const std::size_t before = points_.size();
     watched.apart_until_m = moved_m_ + touch_surfaces(watched, points_);
-    if (points_.size() > before) touching_.push_back(watched.pair);
-    return;
+    const bool met = points_.size() > before;
+    if (met) touching_.push_back(watched.pair);
+    return met;
   }
   if (const auto one = turns ? std::nullopt : prism_contact(held, environment)) {
     watched.apart_until_m = moved_m_ + std::max(0.0, -static_cast<double>(one->depth));
@@ -138,6 +143,7 @@ void Scene::touch(Watched& watched, bool turns, PairPoints& buffer) {
   }
   if (!found.empty()) touching_.push_back(watched.pair);
   points_.insert(points_.end(), found.begin(), found.end());
+  return !found.empty();
 }
 
 SurfaceContact::Stand Scene::stand(const Pair& pair) const {

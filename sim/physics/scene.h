@@ -93,14 +93,16 @@ class Scene {
   struct Watched {
     Pair pair;
     double apart_until_m = 0.0;                ///< on the way that the held part has moved
+    bool met = false;                          ///< when last looked at, on this move
     std::unique_ptr<SurfaceContact> surfaces;  ///< where one of the two is a solid
   };
+  void forget_meetings();
   /// Looks how far the body has come from where it was last looked at.
   void look_where();
   /// Of the held part; its own where it hangs on none.
   [[nodiscard]] Pose body_pose() const;
-  /// Adds the points of two shapes that are near.
-  void touch(Watched& watched, bool turns, PairPoints& buffer);
+  /// Adds the points of two shapes that are near. @return whether there are any
+  bool touch(Watched& watched, bool turns, PairPoints& buffer);
   /// How the surfaces of two shapes stand to each other.
   [[nodiscard]] SurfaceContact::Stand stand(const Pair& pair) const;
   /// The same from their surfaces. @param points to which those that touch are added

@@ -94,12 +94,11 @@ TEST(ContactPoints, StiffnessIsSharedAmongThoseThatPushTheSameWay) {
       point({0.0, 0.0, 0.0}, Vector3::UnitZ()), point({0.1, 0.0, 0.0}, Vector3::UnitZ()),
       point({0.0, 0.0, 0.0}, -Vector3::UnitZ()), point({0.0, 0.0, 0.0}, Vector3::UnitX()),
       point({0.0, 0.0, 0.0}, Vector3(0.0, diagonal, diagonal))};
-  const std::vector<double> part = shares(points);
-  EXPECT_NEAR(part[0], 1.0 / 2.5, 1e-12);
-  EXPECT_NEAR(part[1], 1.0 / 2.5, 1e-12);
-  EXPECT_NEAR(part[2], 1.0, 1e-12);
-  EXPECT_NEAR(part[3], 1.0, 1e-12);
-  EXPECT_NEAR(part[4], 1.0 / 2.0, 1e-12);
+  EXPECT_NEAR(share(points, 0), 1.0 / 2.5, 1e-12);
+  EXPECT_NEAR(share(points, 1), 1.0 / 2.5, 1e-12);
+  EXPECT_NEAR(share(points, 2), 1.0, 1e-12);
+  EXPECT_NEAR(share(points, 3), 1.0, 1e-12);
+  EXPECT_NEAR(share(points, 4), 1.0 / 2.0, 1e-12);
 }
 
 /// What points on the plane z = 0 push back with, of a spring of 1 N/m.
@@ -107,9 +106,8 @@ double force_N(const std::vector<double>& depths_m) {
   std::vector<dContactGeom> points;
   for (const double depth_m : depths_m)
     points.push_back(point(Vector3::Zero(), Vector3::UnitZ(), depth_m));
-  const std::vector<double> part = shares(points);
   double sum_N = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) sum_N += part[i] * depths_m[i];
+  for (std::size_t i = 0; i < points.size(); ++i) sum_N += share(points, i) * depths_m[i];
   return sum_N;
 }
 

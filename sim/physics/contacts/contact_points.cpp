@@ -121,20 +121,17 @@ void keep_deepest(std::vector<dContactGeom>& points) {
   points.resize(kept);
 }
 
-std::vector<double> shares(const std::vector<dContactGeom>& points) {
+double share(const std::vector<dContactGeom>& points, std::size_t index) {
   const auto depth_m = [](const dContactGeom& point) {
     return std::max(kGrazing_m, static_cast<double>(point.depth));
   };
-  std::vector<double> parts;
-  for (const dContactGeom& point : points) {
-    double all_m = 0.0;
-    for (const dContactGeom& other : points) {
-      const double cosine = std::max(0.0, normal_of(point).dot(normal_of(other)));
-      all_m += cosine * cosine * depth_m(other);
-    }
-    parts.push_back(depth_m(point) / all_m);
+  const Vector3 normal = normal_of(points[index]);
+  double all_m = 0.0;
+  for (const dContactGeom& other : points) {
+    const double cosine = std::max(0.0, normal.dot(normal_of(other)));
+    all_m += cosine * cosine * depth_m(other);
   }
-  return parts;
+  return depth_m(points[index]) / all_m;
 }
 
 }  // namespace tenon::sim

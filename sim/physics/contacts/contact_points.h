@@ -25,11 +25,11 @@ inline constexpr std::size_t kPointsMax = 14;
 /// Keeps the deepest point of every plane, then the next deepest of each, until there are so many.
 void keep_some(std::vector<dContactGeom>& points);
 
-/// For every point, the part of its face's stiffness that it gets: in proportion to its depth, and
+/// The part of its face's stiffness that a point gets: in proportion to its depth, and
 /// as if it were alone on the face where the others only graze. So the force of a tilted face does
 /// not jump when another of its corners comes into reach, and does not depend on how many points
 /// stand for it. Normals at right angles are different faces; the adjoining sides of a round hole
 /// count as cos^2 of the angle between them, so that it is about as stiff in every direction.
-[[nodiscard]] std::vector<double> shares(const std::vector<dContactGeom>& points);
+[[nodiscard]] double share(const std::vector<dContactGeom>& points, std::size_t index);
 
 }  // namespace tenon::sim

@@ -102,14 +102,10 @@ void CompliantTool::bend(const Vector3& force_N, double step_s) {
   }
 }
 
-Vector3 CompliantTool::part_velocity_mps(const Admittance::State& tool, double step_s) const {
-  return tool.velocity.head<3>() - bent_m_ / (step_s + arm_.relaxation_s);
-}
-
 Vector3 CompliantTool::free_velocity_mps(const GuardedMove::Setpoint& setpoint,
                                          double step_s) const {
-  Admittance tool = tool_;
-  return part_velocity_mps(tool.update(setpoint, Vector6::Zero(), step_s), step_s);
+  const Vector6 of_tool = tool_.next_velocity(setpoint, Vector6::Zero(), step_s);
+  return of_tool.head<3>() - bent_m_ / (step_s + arm_.relaxation_s);
 }
 
 Vector3 CompliantTool::give_mpspN(double step_s) const {
@@ -123,7 +119,13 @@ void CompliantTool::show() {
   if (shown_) return;
   shown_ = true;
   const Vector6& v = tool_.state().velocity;
-  set_pose(body_, part_pose());
+  const Pose part = part_pose();
+  if (shown_orientation_ && shown_orientation_->coeffs() == part.orientation.coeffs()) {
+    dBodySetPosition(body_, part.position_m.x(), part.position_m.y(), part.position_m.z());
+  } else {
+    set_pose(body_, part);
+    shown_orientation_ = part.orientation;
+  }
   dBodySetLinearVel(body_, v[0], v[1], v[2]);
   dBodySetAngularVel(body_, v[3], v[4], v[5]);
   dBodySetForce(body_, 0.0, 0.0, 0.0);
@@ -167,6 +169,7 @@ void CompliantTool::follow() {
   state.velocity.tail<3>() << angular[0], angular[1], angular[2];
   tool_.reset(state);
   shown_ = false;
+  shown_orientation_.reset();
 }
 
 }  // namespace tenon::sim

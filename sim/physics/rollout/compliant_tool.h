@@ -4,6 +4,7 @@
 #include <ode/ode.h>
 
 #include <cstdint>
+#include <optional>
 
 #include "shared/motion/admittance.h"
 #include "shared/motion/guarded_move.h"
@@ -71,8 +72,6 @@ class CompliantTool {
   void follow();
 
  private:
-  /// Of the part under no force: m/s. @param tool as Admittance::update() leaves it
-  [[nodiscard]] Vector3 part_velocity_mps(const Admittance::State& tool, double step_s) const;
   void bend(const Vector3& force_N, double step_s);
 
   Compliance compliance_;
@@ -80,7 +79,8 @@ class CompliantTool {
   Admittance tool_;
   Vector3 bent_m_ = Vector3::Zero();  ///< of the part, from where the tool is
   bool turns_ = true;
-  bool shown_ = false;  ///< the body is where the part is
+  bool shown_ = false;                                   ///< the body is where the part is
+  std::optional<Eigen::Quaterniond> shown_orientation_;  ///< the body's, where it is known
   /// What the body is driven with: of drive(), for follow().
   struct Drive {
     GuardedMove::Setpoint setpoint;

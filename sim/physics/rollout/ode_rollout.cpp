@@ -110,9 +110,10 @@ struct OdeRollout::Physics {
 
   /// One step of the plant. @return deepest overlap before it
   double step(const GuardedMove::Setpoint& setpoint, double step_s, int halvings = kHalvingsMax) {
+    if (!scene.has_solids()) return leap(setpoint, step_s);
     const CompliantTool::State before = tool.state();
     const double depth_m = leap(setpoint, step_s);
-    if (!scene.has_solids() || halvings == 0 || scene.clearance_m() > 0.0) return depth_m;
+    if (halvings == 0 || scene.clearance_m() > 0.0) return depth_m;
     tool.show();
     known = scene.find_contacts(turning);
     if (known->depth_max_m <= depth_m + kImpact_m) return depth_m;

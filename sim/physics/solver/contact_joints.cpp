@@ -6,10 +6,9 @@
 namespace tenon::sim {
 void ContactJoints::make(OdeWorld& world, const std::vector<dContactGeom>& points,
                          const ContactLaw& law, double step_s) {
-  const std::vector<double> share = shares(points);
   feedback_.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const ContactRow row = contact_row(law, share[i], i, step_s);
+    const ContactRow row = contact_row(law, share(points, i), i, step_s);
     dContact contact{};
     contact.geom = points[i];
     contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactMotionN;

@@ -1,6 +1,5 @@
 #include "sim/physics/solver/locked_contacts.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,13 +14,26 @@ namespace {
 // Two or three do where few faces touch.
 constexpr int kIterationsMax = 60;
 
+/// x of A x = b for a symmetric positive definite A: A = L D L', written out, for it is solved in
+/// every step of a sliding tool.
+Vector3 solved(const Eigen::Matrix3d& A, const Vector3& b) {
+  const double l10 = A(1, 0) / A(0, 0);
+  const double l20 = A(2, 0) / A(0, 0);
+  const double d1 = A(1, 1) - l10 * A(1, 0);
+  const double l21 = (A(2, 1) - l20 * A(1, 0)) / d1;
+  const double d2 = A(2, 2) - l20 * A(2, 0) - l21 * l21 * d1;
+  const double y1 = b[1] - l10 * b[0];
+  const double x2 = (b[2] - l20 * b[0] - l21 * y1) / d2;
+  const double x1 = y1 / d1 - l21 * x2;
+  return {b[0] / A(0, 0) - l10 * x1 - l20 * x2, x1, x2};
+}
+
 }  // namespace
 
 void LockedContacts::make_rows(const std::vector<dContactGeom>& points, const ContactLaw& law,
                                double step_s) {
   rows_.clear();
   positions_m_.clear();
-  const std::vector<double> share = shares(points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const dContactGeom& point = points[i];
     dVector3 first;
@@ -31,11 +43,11 @@ void LockedContacts::make_rows(const std::vector<dContactGeom>& points, const Co
                              static_cast<const dReal*>(first), static_cast<const dReal*>(second)}) {
       Row& row = rows_.emplace_back();
       row.way = vector_of(way);
-      row.softness = kFrictionSoftness;
+      row.be_soft(kFrictionSoftness);
     }
-    const ContactRow normal = contact_row(law, share[i], i, step_s);
+    const ContactRow normal = contact_row(law, share(points, i), i, step_s);
     Row& row = rows_[rows_.size() - kRowsAPoint];
-    row.softness = normal.softness;
+    row.be_soft(normal.softness);
     row.wanted_mps = normal.approach_mps(point.depth, step_s);
     row.most_N = std::numeric_limits<double>::infinity();
     positions_m_.push_back(vector_of(point.pos));
@@ -46,22 +58,21 @@ LockedContacts::Pull LockedContacts::pull_at(const Vector3& velocity_mps, const 
                                              std::size_t stride) {
   Pull pull;
   for (int axis = 0; axis < 3; ++axis) {
-    if (tool.give_mpspN[axis] == 0.0) continue;
     const double off_mps = velocity_mps[axis] - tool.velocity_mps[axis];
-    pull.slope_Nspm(axis, axis) = 1.0 / tool.give_mpspN[axis];
-    pull.force_N[axis] = off_mps / tool.give_mpspN[axis];
+    pull.slope_Nspm(axis, axis) = tool.damping_Nspm[axis];
+    pull.force_N[axis] = off_mps * tool.damping_Nspm[axis];
   }
   for (std::size_t i = 0; i < rows_.size(); i += stride) {
     Row& row = rows_[i];
     const double missing_mps = row.wanted_mps - row.way.dot(velocity_mps);
-    const double whole_N = missing_mps / row.softness;
+    const double whole_N = missing_mps * row.damping_Nspm;
     row.force_N = std::clamp(whole_N, row.least_N, row.most_N);
     row.bound = whole_N > row.most_N ? 1 : (whole_N < row.least_N ? -1 : 0);
     pull.force_N -= row.force_N * row.way;
-    if (row.bound == 0) pull.slope_Nspm += row.way * row.way.transpose() / row.softness;
+    if (row.bound == 0) pull.slope_Nspm += row.damping_Nspm * row.way * row.way.transpose();
   }
   for (int axis = 0; axis < 3; ++axis) {
-    if (tool.give_mpspN[axis] != 0.0) continue;
+    if (tool.damping_Nspm[axis] != 0.0) continue;
     pull.force_N[axis] = 0.0;
     pull.slope_Nspm.row(axis).setZero();
     pull.slope_Nspm.col(axis).setZero();
@@ -76,8 +87,7 @@ double LockedContacts::lowest_along(const Vector3& velocity_mps, const Vector3& 
   bends_.clear();
   double curvature_W = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (tool.give_mpspN[axis] == 0.0) continue;
-    curvature_W += way_mps[axis] * way_mps[axis] / tool.give_mpspN[axis];
+    curvature_W += way_mps[axis] * way_mps[axis] * tool.damping_Nspm[axis];
   }
   for (std::size_t i = 0; i < rows_.size(); i += stride) {
     const Row& row = rows_[i];
@@ -86,7 +96,7 @@ double LockedContacts::lowest_along(const Vector3& velocity_mps, const Vector3& 
     const double missing_mps = row.wanted_mps - row.way.dot(velocity_mps);
     const double a = (missing_mps - row.most_N * row.softness) / speed_mps;
     const double b = (missing_mps - row.least_N * row.softness) / speed_mps;
-    const double bend_W = speed_mps * speed_mps / row.softness;
+    const double bend_W = speed_mps * speed_mps * row.damping_Nspm;
     if (std::max(a, b) <= 0.0) continue;
     bends_.emplace_back(std::max(0.0, std::min(a, b)), bend_W);
     if (std::isfinite(std::max(a, b))) bends_.emplace_back(std::max(a, b), -bend_W);
@@ -108,7 +118,8 @@ bool LockedContacts::settle(const Tool& tool, std::size_t stride, Vector3& veloc
   for (int i = 0; i < kIterationsMax; ++i) {
     was_bound_.clear();
     for (const Row& row : rows_) was_bound_.push_back(row.bound);
-    const Vector3 way_mps = -pull.slope_Nspm.ldlt().solve(pull.force_N);
+    const Pull before = pull;
+    const Vector3 way_mps = -solved(before.slope_Nspm, before.force_N);
     pull = pull_at(velocity_mps + way_mps, tool, stride);
     const bool same = std::equal(rows_.begin(), rows_.end(), was_bound_.begin(),
                                  [](const Row& row, int bound) { return row.bound == bound; });
@@ -116,9 +127,8 @@ bool LockedContacts::settle(const Tool& tool, std::size_t stride, Vector3& veloc
       velocity_mps += way_mps;
       return true;
     }
-    const Vector3 before_mps = velocity_mps;
-    const double slope_W = pull_at(before_mps, tool, stride).force_N.dot(way_mps);
-    velocity_mps += lowest_along(before_mps, way_mps, tool, slope_W, stride) * way_mps;
+    const double slope_W = before.force_N.dot(way_mps);
+    velocity_mps += lowest_along(velocity_mps, way_mps, tool, slope_W, stride) * way_mps;
     pull = pull_at(velocity_mps, tool, stride);
   }
   return false;
@@ -127,7 +137,10 @@ bool LockedContacts::settle(const Tool& tool, std::size_t stride, Vector3& veloc
 bool LockedContacts::solve(const std::vector<dContactGeom>& points, const ContactLaw& law,
                            const Vector3& velocity_mps, const Vector3& give_mpspN, double step_s) {
   make_rows(points, law, step_s);
-  const Tool tool{velocity_mps, give_mpspN};
+  Tool tool{velocity_mps, Vector3::Zero()};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (give_mpspN[axis] != 0.0) tool.damping_Nspm[axis] = 1.0 / give_mpspN[axis];
+  }
   Vector3 velocity = velocity_mps;
   if (!settle(tool, kRowsAPoint, velocity)) return false;
   for (std::size_t i = 0; i < rows_.size(); i += kRowsAPoint) {

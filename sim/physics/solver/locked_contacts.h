@@ -34,19 +34,25 @@ class LockedContacts {
  private:
   struct Row {
     Vector3 way;
-    double softness = 0.0;  ///< m/(Ns)
+    double softness = 0.0;      ///< m/(Ns)
+    double damping_Nspm = 0.0;  ///< its inverse
     double wanted_mps = 0.0;
     double least_N = 0.0;
     double most_N = 0.0;
     double force_N = 0.0;
     int bound = 0;  ///< -1 or +1: the force is at its lower or upper bound
+
+    void be_soft(double by) {
+      softness = by;
+      damping_Nspm = 1.0 / by;
+    }
   };
   static constexpr std::size_t kRowsAPoint = 3;  // normal, friction, friction
 
   /// Without any contact.
   struct Tool {
     Vector3 velocity_mps;
-    Vector3 give_mpspN;
+    Vector3 damping_Nspm;  ///< what resists a change of it; 0 for an axis that is held
   };
   /// At some velocity: what is missing to balance, the gradient of the convex function, and how it
   /// changes with the velocity.
