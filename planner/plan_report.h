@@ -10,6 +10,7 @@
 
 #include "planner/belief/successor.h"
 #include "planner/judge/certification.h"
+#include "planner/judge/judge_effort.h"
 #include "planner/judge/validation.h"
 #include "planner/search/mha_search.h"
 #include "shared/plan/plan.h"
@@ -30,12 +31,10 @@ enum class PlanStatus : std::uint8_t {
 };
 [[nodiscard]] const char* to_string(PlanStatus status);
 
-/// Seconds spent in each part.
+/// Seconds spent before judging.
 struct PlannerTimes {
   double attractors_s = 0.0;
   double search_s = 0.0;
-  double certification_s = 0.0;
-  double validation_s = 0.0;
 };
 
 /// One of the searches that planning made, each without what refuted the paths before.
@@ -78,8 +77,7 @@ struct PlanReport {
   std::vector<std::string> adapted;   ///< what the cell changed in the task, see fit_to_cell()
   SuccessorEngine::Counters search_moves;
   SuccessorEngine::Counters attractor_moves;
-  std::uint64_t certification_moves = 0;
-  std::uint64_t validation_moves = 0;
+  JudgeEffort judging;
   PlannerTimes times;
 };
 

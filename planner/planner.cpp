@@ -123,8 +123,7 @@ class Planning {
 
   [[nodiscard]] std::uint64_t moves_simulated() const {
     return succ_.counters().rollouts + true_succ_.counters().rollouts +
-           long_succ_.counters().rollouts + judge_.effort().certification_moves +
-           judge_.effort().validation_moves;
+           long_succ_.counters().rollouts + judge_.effort().moves();
   }
   [[nodiscard]] std::size_t states() const { return searched_ ? searched_->states() : 0; }
 
@@ -358,11 +357,7 @@ class Planning {
     report_.states = states();
     report_.search_moves = succ_.counters();
     report_.attractor_moves = long_succ_.counters();
-    const JudgeEffort& effort = judge_.effort();
-    report_.certification_moves = effort.certification_moves;
-    report_.validation_moves = effort.validation_moves;
-    report_.times.certification_s = effort.certification_s;
-    report_.times.validation_s = effort.validation_s;
+    report_.judging = judge_.effort();
     return std::move(report_);
   }
 

@@ -39,13 +39,12 @@ bool for_want_of_certainty(PlanStatus status) {
   return false;
 }
 
-double seconds(const PlannerTimes& times) {
-  return times.attractors_s + times.search_s + times.certification_s + times.validation_s;
+double seconds(const PlanReport& report) {
+  return report.times.attractors_s + report.times.search_s + report.judging.time_s();
 }
 
 std::uint64_t moves(const PlanReport& report) {
-  return report.search_moves.rollouts + report.attractor_moves.rollouts +
-         report.certification_moves + report.validation_moves;
+  return report.search_moves.rollouts + report.attractor_moves.rollouts + report.judging.moves();
 }
 
 /// As the task file states them: "sigma_m: [0.015, 0.015], sigma_rad: [0.02]".
@@ -71,7 +70,7 @@ std::string smaller_errors_text(const PlanReport& failed, const Task& task, cons
                                 const ClockSeconds& now_s) {
   if (!for_want_of_certainty(failed.status) || options.method != PlanMethod::kMha) return {};
   if (start.sigma.isZero()) return {};
-  const double until_s = now_s() + std::max(kLeast_s, kShareOfEffort * seconds(failed.times));
+  const double until_s = now_s() + std::max(kLeast_s, kShareOfEffort * seconds(failed));
   std::uint64_t moves_left = options.moves_max == std::numeric_limits<std::uint64_t>::max()
                                  ? options.moves_max
                                  : options.moves_max / 2;

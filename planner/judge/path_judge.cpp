@@ -39,19 +39,27 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses
   misses_ = misses;
   Plan slow = draft_plan(task_, start_, parameters_.assumptions, displacements);
   slow.method = parameters_.method;
-  if (misses == Misses::kAll) {
+  if (slow.method == PlanMethod::kMha) {
     const std::vector<Draw> looked =
-        run(slow, screening_starts(slow, task_, start_, pool_.front()));
-    if (const auto miss = missed(looked)) return *miss;
-    Judgement judgement = at_once(slow, good_chains(looked));
-    if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
-    if (auto again = misses_again(slow)) return *std::move(again);
+        run(slow, screening_starts(slow, task_, start_, pool_.front()), effort_.corners);
+    const bool all = misses == Misses::kAll;
+    if (all) {
+      if (const auto miss = missed(looked)) return *miss;
+    }
+    if (missed_draw(looked, task_.particle_sigmas) == nullptr) {
+      Judgement judgement = at_once(slow, good_chains(looked));
+      if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
+      if (all) {
+        if (auto again = misses_again(slow)) return *std::move(again);
+      }
+    }
   }
   Certification at_contact_speed = certified(slow);
   if (!at_contact_speed.holds()) return refutation_of(at_contact_speed);
   if (slow.method != PlanMethod::kMha) {
-    const Extremes extremes{run(slow, corner_starts(slow, task_, start_, pool_.front())),
-                            rim_of(slow)};
+    const Extremes extremes{
+        run(slow, corner_starts(slow, task_, start_, pool_.front()), effort_.corners),
+        rim_of(slow)};
     return estimated(slow, std::move(at_contact_speed), extremes);
   }
   const std::vector<Chain>& aligned = at_contact_speed.runs.front().chains;
@@ -158,8 +166,10 @@ std::variant<Plan, Refutation> PathJudge::widened(const Plan& plan, std::vector<
 
 Judgement PathJudge::estimated(Plan plan, Certification certification, const Extremes& extremes) {
   Validation estimate;
-  estimate.draws = run(plan, drawn_starts(judging_seed(plan), parameters_.draws,
-                                          DrawnPhysics::kEven, plan, task_, start_, pool_.front()));
+  estimate.draws = run(plan,
+                       drawn_starts(judging_seed(plan), parameters_.draws, DrawnPhysics::kEven,
+                                    plan, task_, start_, pool_.front()),
+                       effort_.validation);
   estimate.corners = decided_by(plan, task_, extremes.corners);
   estimate.rim = decided_by(plan, task_, extremes.rim);
   plan.cost = certification.cost;
@@ -169,31 +179,34 @@ Judgement PathJudge::estimated(Plan plan, Certification certification, const Ext
 }
 
 Certification PathJudge::certified(const Plan& plan) {
-  Certification result = timed(now_s_, effort_.certification_s, [&] {
+  Certification result = timed(now_s_, effort_.certification.time_s, [&] {
     return certify(encode_plan(plan), task_, pool_, CertificationExtent::kToFirstRefutation);
   });
   for (const VariantRun& run : result.runs) {
-    for (const Chain& chain : run.chains) effort_.certification_moves += chain.steps.size();
+    for (const Chain& chain : run.chains) effort_.certification.moves += chain.steps.size();
   }
   return result;
 }
 
 std::vector<Draw> PathJudge::corners_of(const Plan& plan) {
   const auto starts = corner_starts(plan, task_, start_, pool_.front());
-  return misses_ == Misses::kAll ? run(plan, starts) : run_to_miss(plan, starts);
+  return misses_ == Misses::kAll ? run(plan, starts, effort_.corners)
+                                 : run_to_miss(plan, starts, effort_.corners);
 }
 
 std::vector<Draw> PathJudge::rim_of(const Plan& plan) {
-  return run(plan, rim_starts(plan, task_, start_, pool_.front()));
+  return run(plan, rim_starts(plan, task_, start_, pool_.front()), effort_.validation);
 }
 
 std::vector<Draw> PathJudge::drawn(const Plan& plan, std::uint64_t seed) {
-  return run_to_miss(plan, drawn_starts(seed, parameters_.draws, DrawnPhysics::kCorners, plan,
-                                        task_, start_, pool_.front()));
+  return run_to_miss(plan,
+                     drawn_starts(seed, parameters_.draws, DrawnPhysics::kCorners, plan, task_,
+                                  start_, pool_.front()),
+                     effort_.validation);
 }
 
 std::optional<Refutation> PathJudge::misses_again(const Plan& plan) {
-  const std::vector<Draw> draws = run_to_miss(plan, missed_);
+  const std::vector<Draw> draws = run_to_miss(plan, missed_, effort_.corners);
   const Draw* miss = missed_draw(draws, task_.particle_sigmas);
   if (miss == nullptr) return std::nullopt;
   return with_others(refutation_of(*miss, task_));
@@ -215,17 +228,18 @@ Refutation PathJudge::with_others(Refutation refutation) const {
   return refutation;
 }
 
-std::vector<Draw> PathJudge::run_to_miss(const Plan& plan, std::span<const JudgedStart> starts) {
-  return run(plan, starts, [this](const Draw& draw) {
+std::vector<Draw> PathJudge::run_to_miss(const Plan& plan, std::span<const JudgedStart> starts,
+                                         Effort& effort) {
+  return run(plan, starts, effort, [this](const Draw& draw) {
     return !draw.at_goal && draw.sigmas_out <= task_.particle_sigmas;
   });
 }
 
 std::vector<Draw> PathJudge::run(const Plan& plan, std::span<const JudgedStart> starts,
-                                 const std::function<bool(const Draw&)>& until) {
-  std::vector<Draw> draws = timed(now_s_, effort_.validation_s,
-                                  [&] { return run_starts(plan, task_, starts, pool_, until); });
-  for (const Draw& draw : draws) effort_.validation_moves += draw.chain.steps.size();
+                                 Effort& effort, const std::function<bool(const Draw&)>& until) {
+  std::vector<Draw> draws =
+      timed(now_s_, effort.time_s, [&] { return run_starts(plan, task_, starts, pool_, until); });
+  for (const Draw& draw : draws) effort.moves += draw.chain.steps.size();
   return draws;
 }
 

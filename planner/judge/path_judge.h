@@ -14,6 +14,7 @@
 
 #include "planner/belief/rollout_pool.h"
 #include "planner/judge/certification.h"
+#include "planner/judge/judge_effort.h"
 #include "planner/judge/plan_draft.h"
 #include "planner/judge/refutation.h"
 #include "planner/judge/timed.h"
@@ -33,14 +34,6 @@ struct JudgedPlan {
 };
 
 using Judgement = std::variant<JudgedPlan, Refutation>;
-
-/// What judging has taken so far.
-struct JudgeEffort {
-  std::uint64_t certification_moves = 0;  ///< simulated
-  std::uint64_t validation_moves = 0;
-  double certification_s = 0.0;
-  double validation_s = 0.0;
-};
 
 /// Of one task and start. One thread at a time; the pool starts its own.
 class PathJudge {
@@ -70,6 +63,7 @@ class PathJudge {
   [[nodiscard]] Judgement judge(std::span<const Vector6> displacements,
                                 Misses misses = Misses::kFirst);
 
+  /// So far.
   [[nodiscard]] const JudgeEffort& effort() const { return effort_; }
 
  private:
@@ -112,10 +106,12 @@ class PathJudge {
   /// draws every second one is at a corner of friction and size.
   [[nodiscard]] std::vector<Draw> corners_of(const Plan& plan);
   [[nodiscard]] std::vector<Draw> drawn(const Plan& plan, std::uint64_t seed);
+  /// @param effort to which this adds
   [[nodiscard]] std::vector<Draw> run(const Plan& plan, std::span<const JudgedStart> starts,
+                                      Effort& effort,
                                       const std::function<bool(const Draw&)>& until = {});
-  [[nodiscard]] std::vector<Draw> run_to_miss(const Plan& plan,
-                                              std::span<const JudgedStart> starts);
+  [[nodiscard]] std::vector<Draw> run_to_miss(const Plan& plan, std::span<const JudgedStart> starts,
+                                              Effort& effort);
 
   const Task& task_;
   const Start& start_;

@@ -143,6 +143,7 @@ const char* doing(const std::string& phase) {
   if (phase == "attractors") return "Looking for guides";
   if (phase == "search") return "Searching";
   if (phase == "certification") return "Certifying";
+  if (phase == "corners") return "Running the corners";
   return "Validating";
 }
 

@@ -20,7 +20,8 @@ using Json = nlohmann::ordered_json;
 using ReadJson = nlohmann::json;
 
 constexpr std::size_t kCourseMax = 200;  // expansions of a course that are told
-constexpr const char* kPhases[] = {"attractors", "search", "certification", "validation"};
+constexpr const char* kPhases[] = {"attractors", "search", "certification", "corners",
+                                   "validation"};
 
 Json moves_json(const SuccessorEngine::Counters& c) {
   return {{"simulated", c.rollouts}, {"memo_hits", c.memo_hits}, {"failures", c.failures}};
@@ -192,12 +193,14 @@ std::string statistics_json(const PlanReport& report, const Task& task) {
   json["adapted"] = report.adapted;
   json["moves"] = {{"attractors", moves_json(report.attractor_moves)},
                    {"search", moves_json(report.search_moves)},
-                   {"certification", report.certification_moves},
-                   {"validation", report.validation_moves}};
+                   {"certification", report.judging.certification.moves},
+                   {"corners", report.judging.corners.moves},
+                   {"validation", report.judging.validation.moves}};
   json["time_s"] = {{"attractors", report.times.attractors_s},
                     {"search", report.times.search_s},
-                    {"certification", report.times.certification_s},
-                    {"validation", report.times.validation_s}};
+                    {"certification", report.judging.certification.time_s},
+                    {"corners", report.judging.corners.time_s},
+                    {"validation", report.judging.validation.time_s}};
   json["heuristics"] = report.heuristics;
   json["searches"] = rounds_json(report);
   json["course"] = course_json(report.search);

@@ -19,7 +19,7 @@ namespace tenon::planner {
 struct SearchStory {
   /// A part of planning.
   struct Phase {
-    std::string name;  ///< "attractors", "search", "certification", "validation"
+    std::string name;  ///< "attractors", "search", "certification", "corners", "validation"
     double time_s = 0.0;
     std::uint64_t moves = 0;  ///< simulated
   };

@@ -141,7 +141,6 @@ std::string cell_changes_text(const std::vector<std::string>& changes) {
 
 std::string summary(const PlanReport& report, const Task& task, const std::string& file) {
   const Plan& plan = *report.plan;
-  const PlannerTimes& t = report.times;
   const auto moves = [](const SuccessorEngine::Counters& c) {
     return static_cast<unsigned long long>(c.rollouts);
   };
@@ -159,14 +158,17 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
     text += "way: the guide " + report.guide + ", followed to the letter\n";
   text += format(
       "simulated moves: %llu attractors, %llu search (%llu known), %llu certification, "
-      "%llu validation\n",
+      "%llu corners, %llu validation\n",
       moves(report.attractor_moves), moves(report.search_moves),
       static_cast<unsigned long long>(report.search_moves.memo_hits),
-      static_cast<unsigned long long>(report.certification_moves),
-      static_cast<unsigned long long>(report.validation_moves));
-  text +=
-      format("time: %.2f s attractors, %.2f s search, %.2f s certification, %.2f s validation\n",
-             t.attractors_s, t.search_s, t.certification_s, t.validation_s);
+      static_cast<unsigned long long>(report.judging.certification.moves),
+      static_cast<unsigned long long>(report.judging.corners.moves),
+      static_cast<unsigned long long>(report.judging.validation.moves));
+  text += format(
+      "time: %.2f s attractors, %.2f s search, %.2f s certification, %.2f s corners, "
+      "%.2f s validation\n",
+      report.times.attractors_s, report.times.search_s, report.judging.certification.time_s,
+      report.judging.corners.time_s, report.judging.validation.time_s);
   text += "validation: " + estimate_text(report.validation, task) +
           format(", peak force %.0f N\n", peak_force_N(report));
   text += "corners: " + corners_text(report.validation, task) + "\n";

@@ -3,8 +3,9 @@
 
   plan_times.py [--bin FOLDER] [--repeat N] [--seed S]... [--json FILE] [NAME...]
 
-A line for each task: seconds from start to end (median and worst of N runs), how many starts of it were
-planned, largest resident memory. Names choose groups or tasks by a part of their name. Nothing is asserted.
+A line for each task: seconds from start to end (median and worst of N runs), the medians of finding guides and of
+searching, certifying and running the corners, how many starts of it were planned, largest resident memory. Names
+choose groups or tasks by a part of their name. Nothing is asserted.
 """
 
 import argparse
@@ -45,7 +46,9 @@ def starts(file):
 def run(program, task, start, time_limit_s):
     with tempfile.TemporaryDirectory() as folder:
         plan = pathlib.Path(folder) / "plan.tnp"
+        statistics_file = pathlib.Path(folder) / "statistics.json"
         command = [program, task, "--start", start, "-o", plan, "--time-limit", str(time_limit_s)]
+        command += ["--json", statistics_file]
         began = time.monotonic()
         ended = subprocess.run(command, capture_output=True, text=True, check=False)
         seconds = time.monotonic() - began
@@ -53,6 +56,7 @@ def run(program, task, start, time_limit_s):
             "start": start,
             "seconds": seconds,
             "planned": ended.returncode == 0,
+            "parts_s": json.loads(statistics_file.read_text())["time_s"] if statistics_file.exists() else {},
             "said": ended.stderr.strip().splitlines()[-1:] if ended.returncode else [],
         }
 
@@ -60,10 +64,16 @@ def run(program, task, start, time_limit_s):
 def measure(program, name, task, names, repeat, time_limit_s):
     runs = [run(program, task, start, time_limit_s) for start in names for _ in range(repeat)]
     seconds = [one["seconds"] for one in runs]
+
+    def part(*names):
+        return statistics.median(sum(one["parts_s"].get(name, 0.0) for name in names) for one in runs)
+
     planned = {one["start"] for one in runs if one["planned"]}
     memory_mb = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     print(
         f"{name:40s} median {statistics.median(seconds):7.2f} s  worst {max(seconds):7.2f} s"
+        f"  guides {part('attractors'):5.2f} s"
+        f"  search to corners {part('search', 'certification', 'corners'):5.2f} s"
         f"  {len(planned)} of {len(names)} planned  at most {memory_mb:.0f} MB so far",
         flush=True,
     )

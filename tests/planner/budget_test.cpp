@@ -39,8 +39,7 @@ class SlowRollout final : public Rollout {
 };
 
 std::uint64_t moves_of(const PlanReport& report) {
-  return report.search_moves.rollouts + report.attractor_moves.rollouts +
-         report.certification_moves + report.validation_moves;
+  return report.search_moves.rollouts + report.attractor_moves.rollouts + report.judging.moves();
 }
 
 PlanReport within_moves(std::uint64_t moves, std::size_t threads) {

@@ -17,7 +17,7 @@ TEST(MakePlan, WithoutOptionsAndClockWritesTheSameBytesAndMeasuresNoTime) {
   const auto clock = [&] { return now_s += 1e-6; };
   EXPECT_EQ(report.bytes, make_plan(task, task.starts.front(), rollout, {}, clock).bytes);
   EXPECT_EQ(report.times.search_s, 0.0);
-  EXPECT_EQ(report.times.validation_s, 0.0);
+  EXPECT_EQ(report.judging.time_s(), 0.0);
 }
 
 TEST(MakePlan, WithoutAssumptionsTakesTheStiffnessOfTheTask) {

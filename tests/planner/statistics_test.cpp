@@ -65,9 +65,10 @@ TEST(Statistics, ReadBackTheyTellOfEverySearch) {
   EXPECT_EQ(story.rounds.back().steps, report.plan->steps.size());
   EXPECT_EQ(story.bound, report.plan->bound);
   EXPECT_EQ(story.states, report.states);
-  ASSERT_EQ(story.phases.size(), 4U);
+  ASSERT_EQ(story.phases.size(), 5U);
   EXPECT_EQ(story.phases[1].moves, report.search_moves.rollouts);
-  EXPECT_EQ(story.phases[3].moves, report.validation_moves);
+  EXPECT_EQ(story.phases[3].moves, report.judging.corners.moves);
+  EXPECT_EQ(story.phases[4].moves, report.judging.validation.moves);
 }
 
 TEST(Statistics, TheCourseEndsAtTheCostAndBoundOfTheSearchHoweverLongItWas) {

@@ -25,12 +25,12 @@ Figures figures_of(const planner::PlanReport& report, const Task& task) {
   Figures figures;
   figures.planned = report.status == planner::PlanStatus::kPlanned;
   figures.time_s = times.attractors_s + times.search_s;
-  figures.check_s = times.certification_s + times.validation_s;
+  figures.check_s = report.judging.time_s();
   figures.expansions = static_cast<double>(report.expansions);
   figures.expansions_first = static_cast<double>(report.expansions_first);
   figures.moves =
       static_cast<double>(report.attractor_moves.rollouts + report.search_moves.rollouts);
-  figures.check_moves = static_cast<double>(report.certification_moves + report.validation_moves);
+  figures.check_moves = static_cast<double>(report.judging.moves());
   if (!figures.planned) {
     figures.reason = std::string(to_string(report.status)) + ": " + report.reason;
     return figures;
