@@ -229,7 +229,7 @@ def main(failures):
                 for name in ("box", "fault") if webgl else pages:
                     began = time.monotonic()
                     look_at(browser, pages[name], "", webgl, failures, arguments.pictures)
-                    print(f"{name}: four times in {time.monotonic() - began:.1f} s")
+                    print(f"{name}: looked at in {time.monotonic() - began:.1f} s")
                 use(browser, pages["box"], failures)
                 if webgl:
                     continue  # words and numbers are the same, and there every page takes seconds to be drawn
