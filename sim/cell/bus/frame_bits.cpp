@@ -11,40 +11,93 @@ constexpr std::uint32_t kCrcBits = 15;
 constexpr std::uint32_t kCrcPolynomial = 0x4599;
 constexpr std::size_t kClassicMax_bytes = 8;
 
+/// Which stuff bits a row of bits calls for: as many as `count` more are sent.
+struct Stuffing {
+  std::uint8_t run = 0;  ///< of equal bits, 0 to 4
+  bool last = true;      ///< the idle bus is recessive
+  bool stuffed = false;  ///< the last bit called for one
+  std::uint8_t count = 0;
+
+  constexpr void push(bool bit) {
+    run = static_cast<std::uint8_t>(bit == last ? run + 1 : 1);
+    last = bit;
+    stuffed = run == 5;
+    if (!stuffed) return;
+    ++count;
+    last = !bit;
+    run = 1;
+  }
+};
+
+constexpr std::uint32_t fed(std::uint32_t crc, bool bit) {
+  const bool feed = bit != ((crc >> (kCrcBits - 1) & 1u) != 0);
+  return crc << 1 ^ (feed ? kCrcPolynomial : 0u);
+}
+
+constexpr std::size_t kBytes = 256;
+constexpr std::size_t kRuns = 5;
+
+using StuffingTable = std::array<std::array<std::array<Stuffing, kBytes>, kRuns>, 2>;
+
+/// After a byte, highest bit first: by what was last sent, how long that has run, and the byte.
+constexpr StuffingTable stuffing_table() {
+  StuffingTable table{};
+  for (std::size_t last = 0; last < table.size(); ++last) {
+    for (std::size_t run = 0; run < kRuns; ++run) {
+      for (std::size_t byte = 0; byte < kBytes; ++byte) {
+        Stuffing& after = table[last][run][byte];
+        after = {static_cast<std::uint8_t>(run), last != 0, false, 0};
+        for (std::uint32_t bit = 8; bit-- > 0;) after.push((byte >> bit & 1u) != 0);
+      }
+    }
+  }
+  return table;
+}
+
+/// Of the bytes that stand in the eight highest bits.
+constexpr std::array<std::uint32_t, kBytes> crc_table() {
+  std::array<std::uint32_t, kBytes> table{};
+  for (std::size_t byte = 0; byte < kBytes; ++byte) {
+    for (std::uint32_t bit = 8; bit-- > 0;) table[byte] = fed(table[byte], (byte >> bit & 1u) != 0);
+  }
+  return table;
+}
+
+constexpr StuffingTable kStuffed = stuffing_table();
+constexpr std::array<std::uint32_t, kBytes> kCrcs = crc_table();
+
 /// Counts bits as they are sent, stuff bits included, and computes CRC-15 over the others.
 class BitCounter {
  public:
   void push(bool bit) {
     ++count_;
-    run_ = bit == last_ ? run_ + 1 : 1;
-    last_ = bit;
-    stuffed_ = run_ == 5;
-    if (stuffed_) {
-      ++count_;
-      last_ = !bit;
-      run_ = 1;
-    }
-    const bool feed = bit != ((crc_ >> (kCrcBits - 1) & 1u) != 0);
-    crc_ = crc_ << 1 ^ (feed ? kCrcPolynomial : 0u);
+    stuffing_.push(bit);
+    crc_ = fed(crc_, bit);
   }
   /// The lowest `bits` bits, highest first.
   void push(std::uint32_t value, std::uint32_t bits) {
     while (bits-- > 0) push((value >> bits & 1u) != 0);
   }
   void push(std::span<const std::uint8_t> bytes) {
-    for (const std::uint8_t byte : bytes) push(byte, 8);
+    for (const std::uint8_t byte : bytes) {
+      count_ += 8;
+      const std::uint32_t stuffed = stuffing_.count;
+      stuffing_ = kStuffed[stuffing_.last ? 1 : 0][stuffing_.run][byte];
+      stuffing_.count = static_cast<std::uint8_t>(stuffing_.count + stuffed);
+      crc_ = crc_ << 8 ^ kCrcs[(crc_ >> (kCrcBits - 8) ^ byte) & 0xFFu];
+    }
   }
 
-  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] std::uint32_t count() const { return count_ + stuffing_.count; }
   [[nodiscard]] std::uint32_t crc() const { return crc_ & ((1u << kCrcBits) - 1); }
   /// Without the stuff bit that the last bit called for.
-  [[nodiscard]] std::uint32_t count_unended() const { return count_ - (stuffed_ ? 1 : 0); }
+  [[nodiscard]] std::uint32_t count_unended() const {
+    return count() - (stuffing_.stuffed ? 1 : 0);
+  }
 
  private:
-  std::uint32_t count_ = 0;
-  std::uint32_t run_ = 0;
-  bool last_ = true;  // the idle bus is recessive
-  bool stuffed_ = false;
+  std::uint32_t count_ = 0;  ///< without stuff bits
+  Stuffing stuffing_;
   std::uint32_t crc_ = 0;
 };
 

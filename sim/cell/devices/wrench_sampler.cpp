@@ -20,18 +20,18 @@ WrenchSampler::WrenchSampler(const ForceTorqueSensor& sensor, std::uint64_t seed
       bias_(imperfections.bias) {}
 
 void WrenchSampler::power_on(std::int64_t now_ns) {
-  now_ns_ = now_ns;
+  now_ns_ = drifted_ns_ = now_ns;
   tare_ = Vector6::Zero();
 }
 
 void WrenchSampler::advance(std::int64_t now_ns) {
-  drift(now_ns - now_ns_);
   now_ns_ = now_ns;
   faults_.advance(now_ns);
 }
 
-void WrenchSampler::drift(std::int64_t step_ns) {
-  const double sqrt_s = std::sqrt(std::max(0.0, static_cast<double>(step_ns) * 1e-9));
+void WrenchSampler::drift() {
+  const double sqrt_s = std::sqrt(std::max(0.0, static_cast<double>(now_ns_ - drifted_ns_) * 1e-9));
+  drifted_ns_ = now_ns_;
   if (imperfections_.force_drift_N_sqrts > 0.0) {
     for (int i = 0; i < 3; ++i)
       bias_[i] += imperfections_.force_drift_N_sqrts * sqrt_s * drift_.normal();
@@ -52,6 +52,7 @@ void WrenchSampler::measured(const Vector6& wrench, std::int64_t step_ns) {
 }
 
 const WrenchSampler::Sample& WrenchSampler::sample() {
+  drift();
   const bool saturated = faults_.strikes(FaultKind::kSaturatedForce);
   sample_.overrange = faults_.strikes(FaultKind::kOverrangeForce);
   if (faults_.strikes(FaultKind::kFrozenForce)) return sample_;
@@ -97,7 +98,9 @@ double WrenchSampler::forged_N() const {
 
 void WrenchSampler::tare(bool on) {
   tare_ = Vector6::Zero();
-  if (on) tare_ = filtered_ + bias_;
+  if (!on) return;
+  drift();
+  tare_ = filtered_ + bias_;
 }
 
 void WrenchSampler::inject(const Fault& fault) {

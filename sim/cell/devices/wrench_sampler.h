@@ -35,7 +35,7 @@ class WrenchSampler {
                 const SensorImperfections& imperfections);
 
   void power_on(std::int64_t now_ns);
-  /// Drift, and faults that are over.
+  /// Tells the time; ends faults that are over.
   void advance(std::int64_t now_ns);
   /// The true wrench at the sensor, in its axes, over the last `step_ns`. Without a filter the next
   /// sample is of it as it is.
@@ -53,7 +53,8 @@ class WrenchSampler {
   [[nodiscard]] bool has(FaultKind kind) const { return faults_.find(kind) != nullptr; }
 
  private:
-  void drift(std::int64_t step_ns);
+  /// Since the last sample: a random walk has no need of steps between.
+  void drift();
   void sample_axis(int axis, bool saturated);
   /// Before noise: filter, bias and tare, and what a wrong calibration makes of them.
   [[nodiscard]] double reading(int axis) const;
@@ -70,6 +71,7 @@ class WrenchSampler {
   Vector6 bias_ = Vector6::Zero();
   Vector6 tare_ = Vector6::Zero();
   std::int64_t now_ns_ = 0;
+  std::int64_t drifted_ns_ = 0;  ///< bias_ is of then
   std::int64_t drifting_since_ns_ = 0;
 };
 

@@ -65,6 +65,8 @@ class ArmBody {
   [[nodiscard]] dBodyID make_link(const Pose& X_BL, const LinkInertia& link);
   [[nodiscard]] LinkInertia with_payload(const Cell& cell, const LinkInertia& link);
   void drive(std::span<const ServoJoint::Demand> demands, double step_s);
+  /// A step of the bodies.
+  void solve(bool touched, double step_s);
   void read_wrench(double step_s);
   [[nodiscard]] Vector6 load_momentum() const;
   [[nodiscard]] dBodyID last_link() const { return joints_.back().link(); }
@@ -81,6 +83,7 @@ class ArmBody {
   Pose X_OS_;                           ///< sensor in the last body's frame
   Vector6 momentum_ = Vector6::Zero();  ///< of the load: linear, angular about its centre of mass
   Vector6 wrench_ = Vector6::Zero();
+  std::vector<BodyState> before_;  ///< the step: links and part
   std::uint64_t solver_messages_ = 0;
 };
 

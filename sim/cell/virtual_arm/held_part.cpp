@@ -8,6 +8,9 @@ namespace {
 constexpr double kMass_kg = 1e-3;
 constexpr double kRadius_m = 0.05;
 constexpr double kRelaxation_s = 2e-3;  // damping over stiffness, as between parts
+// Nearer to where the link has it, it is there: a force of 0.01 N, its weight, bends most arms by
+// more.
+constexpr double kThere_m = 1e-7;
 
 }  // namespace
 
@@ -29,9 +32,21 @@ Vector3 HeldPart::bent_m() const {
   return vector_of(dBodyGetPosition(body_)) - vector_of(dBodyGetPosition(link_));
 }
 
-void HeldPart::prepare(double step_s) {
+void HeldPart::prepare(double step_s, bool touched) {
+  const bool rides = !touched && bent_m().norm() < kThere_m;
+  if (rides != rides_) {
+    rides ? dBodyDisable(body_) : dBodyEnable(body_);
+    rides ? dJointDisable(joint_) : dJointEnable(joint_);
+    rides_ = rides;
+  }
+  if (rides_) return;
   dJointSetFixedParam(joint_, dParamERP, step_s / (step_s + kRelaxation_s));
   dJointSetFixedParam(joint_, dParamCFM, give_mpN_ / (step_s + kRelaxation_s));
+}
+
+void HeldPart::follow() {
+  if (!rides_) return;
+  set_state(body_, state_of(link_));
 }
 
 }  // namespace tenon::sim

@@ -144,6 +144,25 @@ double ServoJoint::play_at(double position) const {
   return std::clamp(followed_ + integral_ / stiffness_ - position, -half, half);
 }
 
+bool ServoJoint::may_be_unbounded() const {
+  return lower_ < state_.position && state_.position < upper_;
+}
+
+void ServoJoint::set_bounded(bool bounded) {
+  set(dParamFMax, bounded || effort_limit_ == 0.0 ? effort_limit_ : dInfinity);
+}
+
+bool ServoJoint::pulled_too_hard() const {
+  return effort_limit_ > 0.0 && std::abs(raw_effort()) > effort_limit_;
+}
+
+// ODE reports the joint's whole force on the link, its torque about the centre of mass.
+double ServoJoint::raw_effort() const {
+  const Vector3 force_N = vector_of(feedback_.f1);
+  if (!revolute_) return step_axis_.dot(force_N);
+  return step_axis_.dot(vector_of(feedback_.t1) - step_lever_m_.cross(force_N));
+}
+
 void ServoJoint::read() {
   const double raw = raw_position();
   if (revolute_ && std::abs(raw - raw_) > std::numbers::pi) {
@@ -155,11 +174,7 @@ void ServoJoint::read() {
   state_.velocity =
       revolute_ ? dJointGetHingeAngleRate(joint_) : dJointGetSliderPositionRate(joint_);
 
-  // ODE reports the joint's whole force on the link, its torque about the centre of mass.
-  const Vector3 force_N = vector_of(feedback_.f1);
-  const Vector3 torque_Nm = vector_of(feedback_.t1) - step_lever_m_.cross(force_N);
-  const double effort =
-      std::clamp(step_axis_.dot(revolute_ ? torque_Nm : force_N), -effort_limit_, effort_limit_);
+  const double effort = std::clamp(raw_effort(), -effort_limit_, effort_limit_);
   state_.effort = follows_ ? effort : 0.0;
   if (follows_) {
     play_ = play_at(state_.position);

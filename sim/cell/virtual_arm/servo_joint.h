@@ -62,6 +62,12 @@ class ServoJoint {
 
   /// Before a step of the world. @param inertia kg or kg m^2, what the joint moves
   void drive(const Demand& demand, double inertia, double step_s);
+  /// Between the two: whether servo and brake may pull without a bound in the coming step, which
+  /// spares the solver to look for the rows that are at one. Where they have pulled_too_hard()
+  /// then, the step has to be taken back and solved with bounds.
+  [[nodiscard]] bool may_be_unbounded() const;
+  void set_bounded(bool bounded);
+  [[nodiscard]] bool pulled_too_hard() const;
   /// After it.
   void read();
   [[nodiscard]] const State& state() const { return state_; }
@@ -70,6 +76,8 @@ class ServoJoint {
   void follow(const Demand& demand, double inertia, double step_s);
   void yield(const Demand& demand, double step_s);
   [[nodiscard]] double raw_position() const;
+  /// That the joint gave in the last step, N or Nm.
+  [[nodiscard]] double raw_effort() const;
   [[nodiscard]] double play_at(double servo_position) const;
   void set_stops();
   void set(int parameter, double value);

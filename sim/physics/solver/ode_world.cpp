@@ -67,4 +67,16 @@ Pose pose_of(dBodyID body) {
   return {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
 }
 
+BodyState state_of(dBodyID body) {
+  return {pose_of(body), vector_of(dBodyGetLinearVel(body)), vector_of(dBodyGetAngularVel(body))};
+}
+
+void set_state(dBodyID body, const BodyState& state) {
+  const Vector3& v = state.velocity_mps;
+  const Vector3& w = state.omega_radps;
+  set_pose(body, state.pose);
+  dBodySetLinearVel(body, v.x(), v.y(), v.z());
+  dBodySetAngularVel(body, w.x(), w.y(), w.z());
+}
+
 }  // namespace tenon::sim

@@ -45,4 +45,13 @@ class OdeWorld {
 void set_pose(dBodyID body, const Pose& pose);
 [[nodiscard]] Pose pose_of(dBodyID body);
 
+/// Where a body is and how it moves, in the world.
+struct BodyState {
+  Pose pose;
+  Vector3 velocity_mps;
+  Vector3 omega_radps;
+};
+[[nodiscard]] BodyState state_of(dBodyID body);
+void set_state(dBodyID body, const BodyState& state);
+
 }  // namespace tenon::sim
