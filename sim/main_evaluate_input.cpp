@@ -2,8 +2,8 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
 
 #include "shared/base/error.h"
@@ -62,12 +62,12 @@ void check_other(const EvaluateLine& line, const sim::Candidate& candidate,
 std::string identity_of(const EvaluateLine& line, const Task& task) {
   std::string cell;
   for (const auto& file : cell_files(line.cell)) cell += config::read_file(file);
-  std::ifstream stream("/proc/self/exe", std::ios::binary);
-  const std::string program{std::istreambuf_iterator<char>(stream), {}};
+  std::ostringstream program;
+  program << std::ifstream("/proc/self/exe", std::ios::binary).rdbuf();
 
   nlohmann::ordered_json identity;
   identity["tenon-evaluate"] = TENON_VERSION;
-  identity["program"] = hash_of(program);
+  identity["program"] = hash_of(program.str());
   identity["cell"] = hash_of(cell);
   identity["task"] = format("%016llx", static_cast<unsigned long long>(task.hash));
   identity["experiment"] =

@@ -55,7 +55,7 @@ class PathJudge {
   /// What of the starts at the corners a refutation tells.
   enum class Misses : std::uint8_t {
     kFirst,  ///< the first that misses the goal
-    kAll,    ///< every one that does; a look at some of them comes before all else
+    kAll,    ///< every one that does, unless a first look at some of them has found one
   };
 
   /// @param displacements of the path's steps, values that a plan file can hold

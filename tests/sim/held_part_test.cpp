@@ -10,12 +10,13 @@ namespace tenon::sim {
 namespace {
 
 constexpr double kHandStep_s = 0.0005;
+constexpr double kHandMass_kg = 5.0;
 constexpr double kHandGive_mpN = 2e-5;
 
 struct Hand {
   Hand() : link(dBodyCreate(world.id())) {
     dMass mass;
-    dMassSetSphereTotal(&mass, 5.0, 0.1);
+    dMassSetSphereTotal(&mass, kHandMass_kg, 0.1);
     dBodySetMass(link, &mass);
     dBodySetLinearVel(link, 0.1, 0.0, 0.0);
     dBodySetAngularVel(link, 0.0, 0.0, 0.3);
@@ -24,10 +25,19 @@ struct Hand {
   /// @param push_N along y, on the part; 0: nothing touches it  @param pull_N on the link along x
   void step(double push_N, double pull_N) {
     dBodyAddForce(link, pull_N, 0.0, 0.0);
-    part->prepare(kHandStep_s, push_N != 0.0);
+    if (push_N == 0.0 && part->there()) {
+      BodyState moved = state_of(link);
+      moved.velocity_mps.x() += kHandStep_s * pull_N / kHandMass_kg;
+      moved.pose.position_m += kHandStep_s * moved.velocity_mps;
+      set_state(link, moved);
+      dBodySetForce(link, 0.0, 0.0, 0.0);
+      part->ride(moved);
+      return;
+    }
+    part->load(kHandStep_s, push_N != 0.0);
     if (push_N != 0.0) dBodyAddForce(part->body(), 0.0, push_N, 0.0);
     world.step(kHandStep_s);
-    part->follow();
+    part->look();
   }
 
   OdeWorld world;

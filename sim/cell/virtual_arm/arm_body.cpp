@@ -20,13 +20,6 @@ constexpr double kPayloadMassMin_kg = 0.01;
 // another, and gives up.
 constexpr double kSoftness = 1e-7;
 
-Eigen::Matrix3d rotation_of_body(dBodyID body) {
-  const dReal* r = dBodyGetRotation(body);  // rows of four
-  Eigen::Matrix3d rotation;
-  rotation << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
-  return rotation;
-}
-
 Eigen::Matrix3d ball_kgm2(double mass_kg, double radius_m) {
   return 0.4 * mass_kg * radius_m * radius_m * Eigen::Matrix3d::Identity();
 }
@@ -58,24 +51,25 @@ ArmBody::ArmBody(const Cell& cell, const Task& task, const Parameters& parameter
   build(cell, parameters);
   const double series_Npm = parameters.contact_law.stiffness_Npm;
   contact_law_.stiffness_Npm = part_stiffness_Npm(series_Npm);
-  part_.emplace(world_, last_link(), arm_give_mpN(series_Npm));
+  part_.emplace(world_, joints_.back().link(), arm_give_mpN(series_Npm));
   scene_.attach(part_->body(), X_OP_);
 }
 
 void ArmBody::build(const Cell& cell, const Parameters& parameters) {
+  const std::vector<Joint>& joints = cell.robot.joints;
+  for (const Joint& joint : joints) links_.push_back(checked(cell.robot, joint));
+  links_.back() = with_payload(cell, links_.back());
+
   Pose X_BL;
   dBodyID parent = nullptr;
-  for (std::size_t i = 0; i < cell.robot.joints.size(); ++i) {
-    const Joint& joint = cell.robot.joints[i];
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const Joint& joint = joints[i];
     const bool revolute = joint.kind == Joint::Kind::kRevolute;
     X_BL = compose(X_BL, joint.origin);
     const Vector3 axis = X_BL.orientation * joint.axis;
     const Vector3 motion = parameters.start[i] * joint.axis;
     X_BL = compose(X_BL, revolute ? Pose{Vector3::Zero(), rotation_of(motion)} : at(motion));
-
-    LinkInertia link = checked(cell.robot, joint);
-    if (i + 1 == cell.robot.joints.size()) link = with_payload(cell, link);
-    const dBodyID body = make_link(X_BL, link);
+    const dBodyID body = make_body(X_BL, links_[i]);
     joints_.emplace_back(
         world_, joint,
         ServoJoint::Parameters{parameters.servo_lag_s, parameters.integral_time_s,
@@ -83,9 +77,13 @@ void ArmBody::build(const Cell& cell, const Parameters& parameters) {
         body, parent, X_BL.position_m, axis, parameters.start[i]);
     parent = body;
   }
+  dynamics_.emplace(joints, links_, gravity_mps2_);
+  motors_.resize(joints.size());
+  place();
+  momentum_ = load_momentum();
 }
 
-dBodyID ArmBody::make_link(const Pose& X_BL, const LinkInertia& link) {
+dBodyID ArmBody::make_body(const Pose& X_BL, const LinkInertia& link) {
   const dBodyID body = dBodyCreate(world_.id());
   const Eigen::Matrix3d& I = link.inertia_kgm2;
   dMass mass;
@@ -93,7 +91,6 @@ dBodyID ArmBody::make_link(const Pose& X_BL, const LinkInertia& link) {
                      I(0, 2), I(1, 2));
   dBodySetMass(body, &mass);
   set_pose(body, compose(X_BL, at(link.com_m)));
-  links_.push_back(link);
   return body;
 }
 
@@ -116,61 +113,69 @@ LinkInertia ArmBody::with_payload(const Cell& cell, const LinkInertia& link) {
 }
 
 void ArmBody::step(std::span<const ServoJoint::Demand> demands, double step_s) {
-  drive(demands, step_s);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    joints_[i].drive(demands[i], dynamics_->inertia(i), step_s);
+    motors_[i] = joints_[i].motor();
+  }
   scene_.placed();
   const bool touched = scene_.find_contacts(/*turns=*/true).points > 0;
   scene_.make_joints(world_, step_s, contact_law_);
-  part_->prepare(step_s, touched);
-  const std::uint64_t messages_before = ode_messages();
-  solve(touched, step_s);
-  solver_messages_ += ode_messages() - messages_before;
-  part_->follow();
-  for (ServoJoint& joint : joints_) joint.read();
+  if (touched || !part_->there() || !move_freely(step_s)) move_bodies(touched, step_s);
+  place();
+  if (!bodies_stand_) part_->ride(last_link());
   read_wrench(step_s);
 }
 
-// Without contacts only servos and brakes have bounds, and what stays within them is the same
-// without: that is looked for first, at a fraction of the cost.
-void ArmBody::solve(bool touched, double step_s) {
-  const auto free = [](const ServoJoint& joint) { return joint.may_be_unbounded(); };
-  if (touched || !std::all_of(joints_.begin(), joints_.end(), free)) return world_.step(step_s);
-
-  before_.clear();
-  for (const ServoJoint& joint : joints_) before_.push_back(state_of(joint.link()));
-  before_.push_back(state_of(part_->body()));
-  for (ServoJoint& joint : joints_) joint.set_bounded(false);
-  world_.step(step_s);
-  for (ServoJoint& joint : joints_) joint.set_bounded(true);
-  const auto too_hard = [](const ServoJoint& joint) { return joint.pulled_too_hard(); };
-  if (std::none_of(joints_.begin(), joints_.end(), too_hard)) return;
-
-  for (std::size_t i = 0; i < joints_.size(); ++i) set_state(joints_[i].link(), before_[i]);
-  set_state(part_->body(), before_.back());
-  world_.step(step_s);
+bool ArmBody::move_freely(double step_s) {
+  const auto is_held = [](const ServoJoint& joint) {
+    return joint.clear_of_stops() && joint.motor().impedance > 0.0;
+  };
+  if (!std::all_of(joints_.begin(), joints_.end(), is_held)) return false;
+  const JointVector velocities = dynamics_->velocities_after(motors_, step_s);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (std::abs(motors_[i].effort_at(velocities[i])) > motors_[i].effort_max) return false;
+  }
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    joints_[i].moved(joints_[i].state().position + step_s * velocities[i], velocities[i]);
+  }
+  bodies_stand_ = false;
+  return true;
 }
 
-// From the tool to the base, each joint with what it moves as the arm now stands.
-void ArmBody::drive(std::span<const ServoJoint::Demand> demands, double step_s) {
-  CompositeInertia moved;
-  for (std::size_t i = joints_.size(); i-- > 0;) {
-    ServoJoint& joint = joints_[i];
-    const Eigen::Matrix3d rotation = rotation_of_body(joint.link());
-    moved.add(links_[i].mass_kg, vector_of(dBodyGetPosition(joint.link())),
-              rotation * links_[i].inertia_kgm2 * rotation.transpose());
-    const double inertia =
-        joint.revolute() ? moved.about(joint.anchor_m(), joint.axis()) : moved.mass_kg();
-    joint.drive(demands[i], inertia, step_s);
+void ArmBody::move_bodies(bool touched, double step_s) {
+  if (!bodies_stand_) {
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      set_state(joints_[i].link(), dynamics_->link(i));
+    }
+    for (ServoJoint& joint : joints_) joint.stand();
+    bodies_stand_ = true;
   }
+  for (ServoJoint& joint : joints_) joint.load();
+  part_->load(step_s, touched);
+  const std::uint64_t messages_before = ode_messages();
+  world_.step(step_s);
+  solver_messages_ += ode_messages() - messages_before;
+  for (ServoJoint& joint : joints_) joint.read();
+  part_->look();
+}
+
+void ArmBody::place() {
+  JointVector positions{};
+  JointVector velocities{};
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    positions[i] = joints_[i].state().position;
+    velocities[i] = joints_[i].state().velocity;
+  }
+  dynamics_->place(positions, velocities);
 }
 
 Vector6 ArmBody::load_momentum() const {
-  const Eigen::Matrix3d rotation = rotation_of_body(last_link());
-  const Vector3 omega_radps = vector_of(dBodyGetAngularVel(last_link()));
-  const Vector3 velocity_mps =
-      vector_of(dBodyGetLinearVel(last_link())) + omega_radps.cross(rotation * load_.com_m);
+  const BodyState link = last_link();
+  const Eigen::Matrix3d rotation = link.pose.orientation.toRotationMatrix();
+  const Vector3 velocity_mps = link.velocity_mps + link.omega_radps.cross(rotation * load_.com_m);
   Vector6 momentum;
   momentum << load_.mass_kg * velocity_mps,
-      rotation * load_.inertia_kgm2 * rotation.transpose() * omega_radps;
+      rotation * load_.inertia_kgm2 * rotation.transpose() * link.omega_radps;
   return momentum;
 }
 
@@ -180,7 +185,7 @@ void ArmBody::read_wrench(double step_s) {
   const Vector6 before = momentum_;
   momentum_ = load_momentum();
   const Vector6 rate = (momentum_ - before) / step_s;
-  const Eigen::Quaterniond orientation = pose_of(last_link()).orientation;
+  const Eigen::Quaterniond orientation = last_link().pose.orientation;
   const Vector3 sensor_m = orientation * X_OS_.position_m;
   const Vector3 weight_N = load_.mass_kg * gravity_mps2_;
   Vector6 contact = scene_.wrench();
@@ -198,13 +203,11 @@ Pose ArmBody::tool() const { return compose(pose_of(part_->body()), X_OP_); }
 double ArmBody::energy_J() const {
   double energy_J = 0.0;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const dBodyID body = joints_[i].link();
-    const Vector3 omega_radps =
-        rotation_of_body(body).transpose() * vector_of(dBodyGetAngularVel(body));
-    const Vector3 velocity_mps = vector_of(dBodyGetLinearVel(body));
-    energy_J += 0.5 * links_[i].mass_kg * velocity_mps.squaredNorm() +
+    const BodyState link = bodies_stand_ ? state_of(joints_[i].link()) : dynamics_->link(i);
+    const Vector3 omega_radps = link.pose.orientation.conjugate() * link.omega_radps;
+    energy_J += 0.5 * links_[i].mass_kg * link.velocity_mps.squaredNorm() +
                 0.5 * omega_radps.dot(links_[i].inertia_kgm2 * omega_radps) -
-                links_[i].mass_kg * gravity_mps2_.dot(vector_of(dBodyGetPosition(body)));
+                links_[i].mass_kg * gravity_mps2_.dot(link.pose.position_m);
   }
   return energy_J;
 }

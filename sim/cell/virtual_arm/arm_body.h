@@ -1,6 +1,8 @@
 #pragma once
-// The articulated arm in ODE: a body for each link, joined by sliders and hinges with a servo and a
-// brake each, the payload behind the force/torque sensor, and the environment that it touches.
+// The articulated arm: a body for each link, joined by sliders and hinges with a servo and a brake
+// each, the payload behind the force/torque sensor, and the environment that it touches. It moves
+// in joint coordinates while nothing is at a bound of its own, and as ODE's bodies where something
+// touches it, a servo or a brake pulls with all it has, a joint is at its stop or nothing holds it.
 // Private to sim. The payload's mass is rigid with the last link, the part's surface behind what
 // the contact stiffness leaves the arm to give way by; the sensor's wrench follows from the
 // momentum of what is beyond it. One thread; units are the joints' (m, N; rad, Nm).
@@ -16,6 +18,7 @@
 #include "shared/cell/cell.h"
 #include "shared/ports/arm.h"
 #include "shared/task/task.h"
+#include "sim/cell/virtual_arm/arm_dynamics.h"
 #include "sim/cell/virtual_arm/held_part.h"
 #include "sim/cell/virtual_arm/servo_joint.h"
 #include "sim/physics/contacts/contact_law.h"
@@ -62,28 +65,32 @@ class ArmBody {
 
  private:
   void build(const Cell& cell, const Parameters& parameters);
-  [[nodiscard]] dBodyID make_link(const Pose& X_BL, const LinkInertia& link);
+  [[nodiscard]] dBodyID make_body(const Pose& X_BL, const LinkInertia& link);
   [[nodiscard]] LinkInertia with_payload(const Cell& cell, const LinkInertia& link);
-  void drive(std::span<const ServoJoint::Demand> demands, double step_s);
-  /// A step of the bodies.
-  void solve(bool touched, double step_s);
+  /// A step in joint coordinates. @return false: not taken, since a servo or a brake is at its
+  /// bound in it, a joint at its stop, or one without either, which ODE lets fall at less error
+  [[nodiscard]] bool move_freely(double step_s);
+  void move_bodies(bool touched, double step_s);
+  void place();
   void read_wrench(double step_s);
   [[nodiscard]] Vector6 load_momentum() const;
-  [[nodiscard]] dBodyID last_link() const { return joints_.back().link(); }
+  [[nodiscard]] BodyState last_link() const { return dynamics_->link(joints_.size() - 1); }
 
   OdeWorld world_;
   Scene scene_;
   ContactLaw contact_law_;
   Vector3 gravity_mps2_;
-  std::vector<LinkInertia> links_;  ///< the bodies'; their origins are the centres of mass
+  std::vector<LinkInertia> links_;  ///< in the joints' frames, the last one's with the payload
   std::deque<ServoJoint> joints_;
+  std::optional<ArmDynamics> dynamics_;
+  std::vector<JointMotor> motors_;
   std::optional<HeldPart> part_;
   LinkInertia load_;                    ///< beyond the sensor, in the last body's frame
   Pose X_OP_;                           ///< tool in the last body's frame
   Pose X_OS_;                           ///< sensor in the last body's frame
   Vector6 momentum_ = Vector6::Zero();  ///< of the load: linear, angular about its centre of mass
   Vector6 wrench_ = Vector6::Zero();
-  std::vector<BodyState> before_;  ///< the step: links and part
+  bool bodies_stand_ = true;  ///< where the joints have them
   std::uint64_t solver_messages_ = 0;
 };
 

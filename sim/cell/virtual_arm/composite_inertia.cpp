@@ -17,13 +17,6 @@ void CompositeInertia::add(double mass_kg, const Vector3& com_m,
   about_origin_kgm2_ += inertia_kgm2 + mass_kg * of_point(com_m);
 }
 
-// The inertia about the origin's parallel to the axis, moved to the point.
-double CompositeInertia::about(const Vector3& point_m, const Vector3& axis) const {
-  const Vector3 across = axis.cross(point_m);
-  return axis.dot(about_origin_kgm2_ * axis) - 2.0 * axis.cross(moment_kgm_).dot(across) +
-         mass_kg_ * across.squaredNorm();
-}
-
 LinkInertia CompositeInertia::sum() const {
   const Vector3 com_m = moment_kgm_ / mass_kg_;
   return {mass_kg_, com_m, about_origin_kgm2_ - mass_kg_ * of_point(com_m)};

@@ -11,9 +11,6 @@ class CompositeInertia {
   /// @param com_m, inertia_kgm2 (about the centre of mass): in the axes of the sum's frame
   void add(double mass_kg, const Vector3& com_m, const Eigen::Matrix3d& inertia_kgm2);
 
-  [[nodiscard]] double mass_kg() const { return mass_kg_; }
-  /// kg m^2 about a line. @param axis unit
-  [[nodiscard]] double about(const Vector3& point_m, const Vector3& axis) const;
   /// As one body. The mass must not be 0.
   [[nodiscard]] LinkInertia sum() const;
 

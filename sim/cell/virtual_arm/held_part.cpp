@@ -28,25 +28,27 @@ HeldPart::HeldPart(const OdeWorld& world, dBodyID link, double give_mpN)
   dJointSetFixed(joint_);
 }
 
-Vector3 HeldPart::bent_m() const {
-  return vector_of(dBodyGetPosition(body_)) - vector_of(dBodyGetPosition(link_));
+bool HeldPart::there() const { return bent_m_.norm() < kThere_m; }
+
+void HeldPart::ride(const BodyState& link) {
+  bent_m_.setZero();
+  set_state(body_, link);
 }
 
-void HeldPart::prepare(double step_s, bool touched) {
-  const bool rides = !touched && bent_m().norm() < kThere_m;
+void HeldPart::load(double step_s, bool touched) {
+  const bool rides = !touched && there();
   if (rides != rides_) {
     rides ? dBodyDisable(body_) : dBodyEnable(body_);
     rides ? dJointDisable(joint_) : dJointEnable(joint_);
     rides_ = rides;
   }
-  if (rides_) return;
   dJointSetFixedParam(joint_, dParamERP, step_s / (step_s + kRelaxation_s));
   dJointSetFixedParam(joint_, dParamCFM, give_mpN_ / (step_s + kRelaxation_s));
 }
 
-void HeldPart::follow() {
-  if (!rides_) return;
-  set_state(body_, state_of(link_));
+void HeldPart::look() {
+  if (rides_) return ride(state_of(link_));
+  bent_m_ = vector_of(dBodyGetPosition(body_)) - vector_of(dBodyGetPosition(link_));
 }
 
 }  // namespace tenon::sim

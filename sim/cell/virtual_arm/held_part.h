@@ -2,8 +2,7 @@
 // The part in an arm's hand: a body that is next to massless, behind a spring and a damper that
 // yield to forces and not to torques. Private to sim; one thread.
 //
-// While nothing touches it and it stands where the link does, it is the link's own, and the solver
-// has a body and six rows less.
+// While nothing touches it and it stands where the link has it, it rides with the link.
 
 #include <ode/ode.h>
 
@@ -20,20 +19,23 @@ class HeldPart {
 
   [[nodiscard]] dBodyID body() const { return body_; }
   /// How far a force has pushed it from the link, world axes, m.
-  [[nodiscard]] Vector3 bent_m() const;
+  [[nodiscard]] Vector3 bent_m() const { return bent_m_; }
+  /// Whether it stands where the link has it.
+  [[nodiscard]] bool there() const;
 
-  /// Sets spring and damper for the coming step. Call before OdeWorld::step().
-  /// @param touched something may push it in this step
-  void prepare(double step_s, bool touched);
-  /// Goes with the link where it is its own. Call after OdeWorld::step().
-  void follow();
+  /// The link has been put somewhere, and the part with it.
+  void ride(const BodyState& link);
+  /// Before a step of the world, and after it. @param touched something may push it in that step
+  void load(double step_s, bool touched);
+  void look();
 
  private:
   dBodyID link_;
   dBodyID body_;
   dJointID joint_;
   double give_mpN_;
-  bool rides_ = false;  ///< is the link's own
+  Vector3 bent_m_ = Vector3::Zero();
+  bool rides_ = false;  ///< in the last step of the world
 };
 
 }  // namespace tenon::sim

@@ -72,32 +72,28 @@ void ServoJoint::set_stops() {
 }
 
 void ServoJoint::drive(const Demand& demand, double inertia, double step_s) {
-  step_axis_ = axis();
-  step_lever_m_ = anchor_m() - vector_of(dBodyGetPosition(link_));
   follows_ = demand.powered && !demand.brake;
   if (follows_ && demand.impedance) return yield(demand, step_s);
   if (follows_) return follow(demand, inertia, step_s);
-  effort_limit_ = demand.brake ? kBrakeStrength * effort_max_ : 0.0;
   followed_ = state_.encoder;
-  set(dParamVel, 0.0);
-  set(dParamCFM, kBrakeSoftness);
-  set(dParamFMax, effort_limit_);
+  motor_ = {};
+  if (demand.brake) motor_ = {0.0, 1.0 / kBrakeSoftness, kBrakeStrength * effort_max_};
 }
 
 void ServoJoint::follow(const Demand& demand, double inertia, double step_s) {
   const double frequency_radps = std::sqrt(stiffness_ / inertia);
   double damping = 2.0 * inertia * frequency_radps;
-  effort_limit_ = std::min(demand.effort_max, effort_max_);
+  const double effort_max = std::min(demand.effort_max, effort_max_);
   // At release the integral part starts with what the brake held (read() left it there), so that an
   // axis under load does not drop.
   const double error = followed_ - state_.encoder;
-  const bool saturated = std::abs(state_.effort) >= effort_limit_ && error * state_.effort > 0.0;
+  const bool saturated = std::abs(state_.effort) >= effort_max && error * state_.effort > 0.0;
   if (parameters_.integral_time_s > 0.0 && !saturated) {
     const double time_s =
         std::max(parameters_.integral_time_s, kIntegralPeriodsMin / frequency_radps);
     integral_ += stiffness_ / time_s * error * step_s;
   }
-  integral_ = std::clamp(integral_, -effort_limit_, effort_limit_);
+  integral_ = std::clamp(integral_, -effort_max, effort_max);
 
   double velocity = demand.velocity;
   if (parameters_.lag_s > 0.0) {
@@ -118,24 +114,18 @@ void ServoJoint::follow(const Demand& demand, double inertia, double step_s) {
     damping *= kPlayDamping;
   }
   const double impedance = step_s * spring + damping;
-  set_motor((pull + damping * velocity) / impedance, impedance);
+  motor_ = {(pull + damping * velocity) / impedance, impedance, effort_max};
 }
 
 // Spring and damper act on what there is at the end of the step, as in follow().
 void ServoJoint::yield(const Demand& demand, double step_s) {
   const VirtualDrive::Impedance& set = *demand.impedance;
-  effort_limit_ = std::min(demand.effort_max, effort_max_);
   followed_ = state_.encoder;
   integral_ = 0.0;
   const double pull = set.stiffness * (demand.position - state_.position) + set.effort;
   const double impedance = std::max(step_s * set.stiffness + set.damping, kLeastImpedance);
-  set_motor((pull + set.damping * demand.velocity) / impedance, impedance);
-}
-
-void ServoJoint::set_motor(double velocity, double impedance) {
-  set(dParamVel, velocity);
-  set(dParamCFM, 1.0 / impedance);
-  set(dParamFMax, effort_limit_);
+  motor_ = {(pull + set.damping * demand.velocity) / impedance, impedance,
+            std::min(demand.effort_max, effort_max_)};
 }
 
 // Without load the motor would stand at q_d + I / K; the link is in its way beyond the play.
@@ -144,16 +134,28 @@ double ServoJoint::play_at(double position) const {
   return std::clamp(followed_ + integral_ / stiffness_ - position, -half, half);
 }
 
-bool ServoJoint::may_be_unbounded() const {
+bool ServoJoint::clear_of_stops() const {
   return lower_ < state_.position && state_.position < upper_;
 }
 
-void ServoJoint::set_bounded(bool bounded) {
-  set(dParamFMax, bounded || effort_limit_ == 0.0 ? effort_limit_ : dInfinity);
+void ServoJoint::moved(double position, double velocity) {
+  state_.position = position;
+  state_.velocity = velocity;
+  settle(motor_.effort_at(velocity));
 }
 
-bool ServoJoint::pulled_too_hard() const {
-  return effort_limit_ > 0.0 && std::abs(raw_effort()) > effort_limit_;
+void ServoJoint::stand() {
+  raw_ = raw_position();
+  offset_ = state_.position - raw_;
+  set_stops();
+}
+
+void ServoJoint::load() {
+  step_axis_ = axis();
+  step_lever_m_ = anchor_m() - vector_of(dBodyGetPosition(link_));
+  set(dParamVel, motor_.velocity);
+  set(dParamCFM, 1.0 / std::max(motor_.impedance, kLeastImpedance));
+  set(dParamFMax, motor_.effort_max);
 }
 
 // ODE reports the joint's whole force on the link, its torque about the centre of mass.
@@ -174,7 +176,12 @@ void ServoJoint::read() {
   state_.velocity =
       revolute_ ? dJointGetHingeAngleRate(joint_) : dJointGetSliderPositionRate(joint_);
 
-  const double effort = std::clamp(raw_effort(), -effort_limit_, effort_limit_);
+  settle(raw_effort());
+}
+
+// The brake's effort is kept, for a servo that takes over to begin with.
+void ServoJoint::settle(double effort) {
+  effort = std::clamp(effort, -motor_.effort_max, motor_.effort_max);
   state_.effort = follows_ ? effort : 0.0;
   if (follows_) {
     play_ = play_at(state_.position);

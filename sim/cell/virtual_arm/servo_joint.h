@@ -1,6 +1,7 @@
 #pragma once
-// One joint of the virtual arm: an ODE slider or hinge with the servo and the holding brake in its
-// motor row. Private to sim.
+// One joint of the virtual arm, with its servo and its holding brake: an ODE slider or hinge with
+// both in its motor row, and what is known of it where the arm moves in joint coordinates. Private
+// to sim.
 //
 // The servo is an implicit spring and damper from the demand to the motor's side of the gear, with
 // an integral part, never stronger than the drive's torque:
@@ -18,6 +19,7 @@
 
 #include "shared/cell/robot.h"
 #include "sim/cell/devices/virtual_drive.h"
+#include "sim/cell/virtual_arm/joint_motor.h"
 #include "sim/physics/solver/ode_world.h"
 
 namespace tenon::sim {
@@ -55,20 +57,21 @@ class ServoJoint {
   ServoJoint(const ServoJoint&) = delete;
   ServoJoint& operator=(const ServoJoint&) = delete;
 
-  [[nodiscard]] bool revolute() const { return revolute_; }
   [[nodiscard]] dBodyID link() const { return link_; }
-  [[nodiscard]] Vector3 axis() const;      ///< in the world
-  [[nodiscard]] Vector3 anchor_m() const;  ///< in the world; of a hinge
 
-  /// Before a step of the world. @param inertia kg or kg m^2, what the joint moves
+  /// Before a step: what its motor is to do. @param inertia kg or kg m^2, what the joint moves
   void drive(const Demand& demand, double inertia, double step_s);
-  /// Between the two: whether servo and brake may pull without a bound in the coming step, which
-  /// spares the solver to look for the rows that are at one. Where they have pulled_too_hard()
-  /// then, the step has to be taken back and solved with bounds.
-  [[nodiscard]] bool may_be_unbounded() const;
-  void set_bounded(bool bounded);
-  [[nodiscard]] bool pulled_too_hard() const;
-  /// After it.
+  [[nodiscard]] const JointMotor& motor() const { return motor_; }
+
+  /// A step in joint coordinates ended so; the motor pulled as it was to, within its bounds.
+  void moved(double position, double velocity);
+  /// Whether the link is where no end stop acts.
+  [[nodiscard]] bool clear_of_stops() const;
+
+  /// The two bodies have been put where state() has them.
+  void stand();
+  /// Before a step of the world, and after it.
+  void load();
   void read();
   [[nodiscard]] const State& state() const { return state_; }
 
@@ -76,13 +79,14 @@ class ServoJoint {
   void follow(const Demand& demand, double inertia, double step_s);
   void yield(const Demand& demand, double step_s);
   [[nodiscard]] double raw_position() const;
+  [[nodiscard]] Vector3 axis() const;      ///< in the world
+  [[nodiscard]] Vector3 anchor_m() const;  ///< in the world; of a hinge
   /// That the joint gave in the last step, N or Nm.
   [[nodiscard]] double raw_effort() const;
   [[nodiscard]] double play_at(double servo_position) const;
   void set_stops();
   void set(int parameter, double value);
-  /// A motor row that pulls with impedance (velocity - actual).
-  void set_motor(double velocity, double impedance);
+  void settle(double effort);
 
   dJointID joint_;
   dBodyID link_;
@@ -100,7 +104,7 @@ class ServoJoint {
   double integral_ = 0.0;                ///< I
   double followed_;                      ///< q_d for the end of the last step
   double play_ = 0.0;                    ///< q_m - q
-  double effort_limit_ = 0.0;            ///< of the motor row in the last step
+  JointMotor motor_;                     ///< of the last step
   Vector3 step_axis_ = Vector3::Zero();  ///< of the last step, to read its effort
   Vector3 step_lever_m_ = Vector3::Zero();
   State state_;
