@@ -6,7 +6,6 @@
 
 #include "executor/dry_run/plan_check.h"
 #include "shared/base/error.h"
-#include "sim/cell/virtual_arm/start_joints.h"
 #include "sim/evaluation_chain/trial_chain.h"
 
 namespace tenon::sim {
@@ -44,7 +43,8 @@ TrialRunner::TrialRunner(const Cell& cell, const Task& task, const Candidate& ca
     throw InputError(candidate.file + ": cell '" + cell.name +
                      "' cannot execute this plan: " + refusals.front());
   }
-  const JointVector joints = start_joints(cell, candidate.start.pose);
+  // Of all ways in which the tool can be there, the one that the whole plan has room from.
+  const JointVector joints = dry_run.start.value();
   prepared_ = std::make_shared<const PreparedPlan>(
       PreparedPlan{cell, task, candidate, std::move(dry_run), joints});
 }
