@@ -12,14 +12,15 @@
 #include "planner/collision.h"
 #include "planner/goal_certainty.h"
 #include "planner/judge/path_judge.h"
+#include "planner/progress.h"
 #include "planner/search/contact_greedy.h"
 #include "planner/search/goal_attractors.h"
 #include "planner/search/guide_way.h"
 #include "planner/search/touch_turns.h"
 #include "planner/search_moves.h"
 #include "planner/searched_graph.h"
+#include "planner/tilt_effort.h"
 #include "planner/wording.h"
-#include "shared/base/text.h"
 #include "shared/plan/codec.h"
 
 namespace tenon::planner {
@@ -35,9 +36,6 @@ constexpr std::uint64_t kFirstMoves = 1000;
 // So many starts that its way has missed make the same guide try again.
 constexpr int kTriesAGuide = 6;
 
-// After how long without a line progress is told, so that it is never silent for 2 s.
-constexpr double kSilent_s = 1.0;
-
 class Planning {
  public:
   Planning(const Task& task, const Start& start, const Rollout& rollout,
@@ -47,18 +45,15 @@ class Planning {
         options_(options),
         assumptions_(stored_assumptions(task, options.assumptions)),
         now_s_(now_s ? now_s : [] { return 0.0; }),
-        began_s_(now_s_()),
+        progress_(options.progress, now_s_),
         pool_(rollout, options.threads),
         search_pool_(options.search_physics ? *options.search_physics : rollout, options.threads),
-        succ_(search_pool_, search_move(task, start, assumptions_), task.rollout_step_us,
-              edges_of(task)),
-        true_succ_(pool_, search_move(task, start, assumptions_), task.rollout_step_us,
-                   edges_of(task)),
+        succ_(search_pool_, search_move(task, start, assumptions_), task.rollout_step_us),
+        true_succ_(pool_, search_move(task, start, assumptions_), task.rollout_step_us),
         long_succ_(search_pool_, long_move(task, search_move(task, start, assumptions_)),
-                   task.rollout_step_us, edges_of(task)),
+                   task.rollout_step_us),
         judge_(task, start, {options.method, assumptions_, options.draws, options.reach}, pool_,
-               now_s_),
-        told_s_(began_s_) {
+               now_s_) {
     report_.method = options.method;
     if (options.progress) {
       for (RolloutPool* pool : {&pool_, &search_pool_}) {
@@ -80,22 +75,32 @@ class Planning {
     }
     const Attractors attractors = guides_from(start);
     searched_.emplace(task_, start, attractors, succ_);
-    const auto enough = [this] {
-      return !is_baseline() && succ_.counters().rollouts >= kFirstMoves;
-    };
-    bool planned = !attractors.turns.empty() && followed_in_turn(attractors);
-    if (!planned) {
-      searched_.emplace(task_, start, attractors, succ_);
-      planned = searched([&] { return out_of_budget() || enough(); }) ||
-                (enough() &&
-                 (followed(attractors.candidates) || searched([this] { return out_of_budget(); })));
+    for (const double tilt_rad : tilts_to_hold(task_)) {
+      if (tilt_.refuted()) progress_.tell(smaller_tilt(tilt_rad));
+      tilt_.begin(moves_simulated(), succ_.counters());
+      judge_.hold_tilt(tilt_rad);
+      round_ = 0;
+      if (found(start, attractors)) return improve(), ended(PlanStatus::kPlanned, "");
+      if (!tilt_.refuted() || out_of_time() || out_of_moves()) break;
     }
-    if (planned) return improve(), ended(PlanStatus::kPlanned, "");
     if (!report_.search.has_path) return without_path();
     return ended(PlanStatus::kNotCertified, every_path_refuted(report_, options_.rounds_max));
   }
 
  private:
+  /// Guides followed to the letter, or a search along them. @return whether there is a plan
+  bool found(const Belief& start, const Attractors& attractors) {
+    searched_->begin_from(start);
+    if (!attractors.turns.empty() && followed_in_turn(attractors)) return true;
+    searched_->begin_from(start);
+    const auto enough = [this] {
+      return !is_baseline() && tilt_.searched(succ_.counters()) >= kFirstMoves;
+    };
+    if (searched([&] { return out_of_budget() || enough(); })) return true;
+    return enough() &&
+           (followed(attractors.candidates) || searched([this] { return out_of_budget(); }));
+  }
+
   /// From here on what the arm cannot make does not exist. @return why there is no plan then
   std::string enter_reach() {
     if (options_.reach == nullptr) return {};
@@ -106,20 +111,16 @@ class Planning {
     return {};
   }
 
-  void tell(const std::string& what) {
-    if (!options_.progress) return;
-    told_s_ = now_s_();
-    options_.progress(format("%6.1f s: ", told_s_ - began_s_) + what);
-  }
-
   /// Whatever takes long is made of many moves, so none of it is silent for long.
   void tell_if_silent() {
-    if (now_s_() - told_s_ >= kSilent_s) tell(still(doing_, moves_simulated(), states()));
+    if (progress_.is_silent()) progress_.tell(still(doing_, moves_simulated(), states()));
   }
 
-  [[nodiscard]] bool out_of_time() const { return now_s_() - began_s_ > task_.time_limit_s; }
+  [[nodiscard]] bool out_of_time() const { return progress_.since_began_s() > task_.time_limit_s; }
   [[nodiscard]] bool out_of_moves() const { return moves_simulated() >= options_.moves_max; }
-  [[nodiscard]] bool out_of_budget() const { return out_of_moves() || out_of_time(); }
+  [[nodiscard]] bool out_of_budget() const {
+    return out_of_moves() || out_of_time() || tilt_.spent(moves_simulated());
+  }
 
   [[nodiscard]] std::uint64_t moves_simulated() const {
     return succ_.counters().rollouts + true_succ_.counters().rollouts +
@@ -154,7 +155,7 @@ class Planning {
     report_.guides = attractors.guides.size();
     report_.heuristics = heuristic_names(attractors.guides);
     report_.unsettled = attractors.unsettled;
-    tell(guides_found(attractors.guides, long_succ_.counters().rollouts));
+    progress_.tell(guides_found(attractors.guides, long_succ_.counters().rollouts));
     return attractors;
   }
 
@@ -175,9 +176,9 @@ class Planning {
     const auto leads_from_some = [&](const Guide& guide) {
       if (leads(guide)) return true;
       const Belief all = searched_->start();
-      searched_.emplace(task_, tips, attractors, succ_);
+      searched_->begin_from(tips);
       if (leads(guide)) return true;
-      searched_.emplace(task_, all, attractors, succ_);
+      searched_->begin_from(all);
       return false;
     };
     doing_ = "following guides";
@@ -189,7 +190,7 @@ class Planning {
       doing_ = "looking for guides";
       candidates = timed(now_s_, report_.times.attractors_s,
                          [this] { return touched_in_turn(searched_->start()); });
-      tell(guides_found(candidates, long_succ_.counters().rollouts));
+      progress_.tell(guides_found(candidates, long_succ_.counters().rollouts));
       doing_ = "following guides";
     }
     return true;
@@ -228,7 +229,7 @@ class Planning {
         return follow_guide(guide, task_, searched_->start(), start_.pose, *succ, pool_.front(),
                             &left);
       });
-      tell(way ? guide_followed(guide, way->size()) : guide_left(guide, left));
+      progress_.tell(way ? guide_followed(guide, way->size()) : guide_left(guide, left));
       if (!way) return false;
       Judgement judgement = judge_.judge(*way, PathJudge::Misses::kAll);
       if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
@@ -237,10 +238,11 @@ class Planning {
         return true;
       }
       const auto& refutation = std::get<Refutation>(judgement);
+      tilt_.refute(refutation.by_tilt, moves_simulated());
       const std::size_t fresh = searched_->add_starts(refutation);
       const bool truer = fresh == 0 && succ != &true_succ_ && options_.search_physics != nullptr;
       report_.refusals.push_back(refutation.why + way_refuted(fresh, truer));
-      tell("refuted: " + report_.refusals.back());
+      progress_.tell("refuted: " + report_.refusals.back());
       if (truer) succ = &true_succ_;
       if (fresh == 0 && !truer) return false;
     }
@@ -259,14 +261,15 @@ class Planning {
     report_.expansions += report_.search.expanded.size();
     if (report_.refusals.empty()) report_.expansions_first = report_.expansions;
     doing_ = "judging a path";
-    if (report_.search.has_path) tell(path_found(report_.search));
+    if (report_.search.has_path) progress_.tell(path_found(report_.search));
   }
 
   void learn(const Refutation& refutation) {
+    tilt_.refute(refutation.by_tilt, moves_simulated());
     const auto refused_step = searched_->learn(refutation, report_.search.path);
     report_.refusals.push_back(lesson(refutation, refused_step));
     report_.rounds.back().outcome = "refuted: " + report_.refusals.back();
-    tell("refuted: " + report_.refusals.back());
+    progress_.tell("refuted: " + report_.refusals.back());
   }
 
   PlanReport without_path() {
@@ -366,7 +369,7 @@ class Planning {
   const PlannerOptions& options_;
   CellAssumptions assumptions_;
   ClockSeconds now_s_;
-  double began_s_;
+  Progress progress_;
   RolloutPool pool_;  ///< of the truth
   RolloutPool search_pool_;
   SuccessorEngine succ_;
@@ -376,9 +379,9 @@ class Planning {
   std::optional<MoveReach> reach_;  ///< where an arm is asked
   std::optional<SearchedGraph> searched_;
   std::vector<Vector6> kept_path_;  ///< that the plan was made of
+  TiltEffort tilt_;
   std::size_t round_ = 0;
   bool refuted_ = false;  ///< the last better path
-  double told_s_;         ///< when progress was last told
   const char* doing_ = "looking for guides";
   PlanReport report_;
 };

@@ -42,7 +42,8 @@ struct PlannerOptions {
   const ArmReach* reach = nullptr;
   std::size_t draws = kDrawsMin;      ///< random starts of each validation
   std::size_t expansions_max = 5000;  ///< of one search
-  std::size_t rounds_max = 100;       ///< searches, each without what the last ones had refuted
+  /// Searches, each without what the last ones had refuted; as many for each tilt that is tried.
+  std::size_t rounds_max = 100;
   /// Guarded moves simulated, for guides, search and judging together, after which no path is
   /// searched for any more: a budget that does not depend on the machine or its load. What is being
   /// expanded or judged then is still brought to its end.

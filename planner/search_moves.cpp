@@ -26,10 +26,6 @@ CellAssumptions stored_assumptions(const Task& task, const std::optional<CellAss
   return {stored(assumptions.contact_stiffness_Npm), stored(assumptions.latency_max_s)};
 }
 
-SuccessorEngine::Edges edges_of(const Task& task) {
-  return task.guide_moves ? SuccessorEngine::Edges::kRefused : SuccessorEngine::Edges::kTaken;
-}
-
 MoveParameters search_move(const Task& task, const Start& start,
                            const CellAssumptions& assumptions) {
   return move_parameters(one_step(task, start, assumptions), 0);

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "planner/belief/move_reach.h"
-#include "planner/belief/successor.h"
 #include "planner/judge/plan_draft.h"
 #include "shared/motion/move_parameters.h"
 #include "shared/ports/arm_reach.h"
@@ -17,9 +16,6 @@ namespace tenon::planner {
 /// What is assumed of the cell: what was told, else what the task says; as a plan file holds it.
 [[nodiscard]] CellAssumptions stored_assumptions(const Task& task,
                                                  const std::optional<CellAssumptions>& told);
-
-/// Whether moves that end at an edge are taken: a lattice of the task's own has no others.
-[[nodiscard]] SuccessorEngine::Edges edges_of(const Task& task);
 
 /// Everything of the search's moves but their displacement: that of a plan's step, as the file has
 /// it.

@@ -39,6 +39,13 @@ std::vector<Vector6> SearchedGraph::displacements(const std::vector<PathEdge>& p
   return displacements;
 }
 
+void SearchedGraph::begin_from(Belief start) {
+  belief_ = std::move(start);
+  middle_m_ = mean_pose(belief_).position_m;
+  states_before_ += graph_->size();
+  graph_.emplace(task_, belief_, attractors_, succ_);
+}
+
 bool SearchedGraph::add(const Particle& start) {
   if (known(start) != belief_.particles.end()) return false;
   belief_.particles.push_back(start);

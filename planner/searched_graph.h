@@ -30,6 +30,8 @@ class SearchedGraph {
 
   /// What is known of the start: its particles, and the starts that refuted a path.
   [[nodiscard]] const Belief& start() const { return belief_; }
+  /// Another start, and none that refuted a path: graph() begins anew.
+  void begin_from(Belief start);
   /// Makes a start a particle: graph() begins anew. @return false where it is one already
   bool add(const Particle& start);
   /// Likewise the start of a refutation's chain and, evenly among its others, up to eight: what is

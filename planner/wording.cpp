@@ -92,6 +92,12 @@ std::string path_found(const SearchResult& search) {
                 search.expanded.size());
 }
 
+std::string smaller_tilt(double held_rad) {
+  if (held_rad == 0.0) return "no plan bears a tilt: looking for one without";
+  return format("no plan bears that tilt: looking for one that bears %.2f degrees",
+                shown(held_rad, 3));
+}
+
 std::string way_refuted(std::size_t starts, bool truer) {
   if (starts > 1) return format("; %zu starts that missed become particles", starts);
   if (starts == 1) return "; it becomes a particle";

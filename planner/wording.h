@@ -38,6 +38,9 @@ struct SearchLimits {
 [[nodiscard]] std::string guide_followed(const Guide& guide, std::size_t moves);
 [[nodiscard]] std::string path_found(const SearchResult& search);
 
+/// No plan was found for more of the task's tilt. @param held_rad of it from now on
+[[nodiscard]] std::string smaller_tilt(double held_rad);
+
 /// What follows for the next way that a guide leads from what refuted the last one.
 /// @param starts that have become particles  @param truer whether the true physics is gone by then
 [[nodiscard]] std::string way_refuted(std::size_t starts, bool truer);

@@ -42,6 +42,9 @@ Metric metric_of(const Task& task) {
     const double ratio = task.goal_tolerance_m / task.goal_axes.tolerance[axis];
     metric.own_variance[axis] = ratio * ratio;
   }
+  for (int axis = 3; axis < 6; ++axis) {
+    if (!has(task.coordinates, axis)) metric.own |= static_cast<CoordinateMask>(1U << axis);
+  }
   return metric;
 }
 

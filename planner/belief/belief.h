@@ -23,11 +23,11 @@ struct Belief {
 
 /// What an angle weighs beside a way, the same in distances and in uncertainties. Ways weigh 1, so
 /// that tolerances are metres. Where the goal has axes of its own, their variances weigh as their
-/// tolerances do, and those of free axes nothing.
+/// tolerances do; those of free axes and of rotations that are no coordinate weigh nothing.
 struct Metric {
   double orientation_weight = 0.1;         ///< m per rad
-  Vector6 own_variance = Vector6::Zero();  ///< m^2 per m^2 or rad^2, of axes of their own
-  CoordinateMask own = 0;                  ///< which these are
+  Vector6 own_variance = Vector6::Zero();  ///< m^2 per m^2 or rad^2, of the axes in own
+  CoordinateMask own = 0;                  ///< which do not weigh as all others
 
   /// Of an axis's variance, m^2 per m^2 or rad^2.
   [[nodiscard]] double variance_weight(int axis) const {

@@ -11,14 +11,28 @@ namespace {
 // the tolerance is done, and wrong now and then.
 constexpr double kOfTolerance = 0.5;
 
+/// Rotations that are no coordinate are as at the goal: no move changes them, and the goal does not
+/// ask for them.
+Pose as_turned_at_goal(const Pose& tool, const Task& task) {
+  Vector6 off = displacement_between(task.goal, tool);
+  bool other = false;
+  for (int axis = 3; axis < 6; ++axis) {
+    if (has(task.coordinates, axis) || off[axis] == 0.0) continue;
+    off[axis] = 0.0;
+    other = true;
+  }
+  return other ? Pose{tool.position_m, displaced(task.goal, off).orientation} : tool;
+}
+
 }  // namespace
 
 BeliefSummary summarise(const Belief& belief, const Task& task) {
   const Metric metric = metric_of(task);
-  BeliefSummary summary{mean_pose(belief), uncertainty(belief, metric)};
+  const Pose mean = mean_pose(belief);
+  BeliefSummary summary{as_turned_at_goal(mean, task), uncertainty(belief, metric)};
   for (const Particle& particle : belief.particles) {
     const Pose tool = particle.tool();
-    const Vector6 off = displacement_between(summary.mean, tool);
+    const Vector6 off = displacement_between(mean, tool);
     summary.spread = summary.spread.cwiseMax(off.cwiseAbs());
     summary.farthest_m = std::max(summary.farthest_m, distance(tool, task.goal, metric));
     summary.farthest = std::max(summary.farthest, tolerances_from_goal(task, tool));

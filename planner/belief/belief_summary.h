@@ -9,7 +9,7 @@ namespace tenon::planner {
 
 /// What a belief is to costs and heuristics.
 struct BeliefSummary {
-  Pose mean;
+  Pose mean;  ///< its rotations that are no coordinate are the goal's
   double uncertainty_m2 = 0.0;
   double farthest_m = 0.0;           ///< distance to the goal of the particle farthest from it
   double farthest = 0.0;             ///< the same in the goal's tolerances

@@ -14,8 +14,8 @@ constexpr double kCoincident_rad = 1e-5;
 }  // namespace
 
 SuccessorEngine::SuccessorEngine(RolloutPool& pool, const MoveParameters& move,
-                                 std::int64_t step_us, Edges edges)
-    : pool_(pool), move_(move), step_us_(step_us), edges_(edges) {}
+                                 std::int64_t step_us)
+    : pool_(pool), move_(move), step_us_(step_us) {}
 
 SuccessorEngine::Key SuccessorEngine::key_of(const Particle& particle,
                                              const Vector6& displacement) {
@@ -34,8 +34,7 @@ SuccessorEngine::End SuccessorEngine::simulate(Rollout& rollout, const Job& job)
   if (!result.valid || result.move.outcome == Outcome::kTimeout) return std::nullopt;
   const Particle end{result.move.pose, result.move.signature, job.particle.physics,
                      job.particle.environment};
-  if (edges_ == Edges::kRefused && rests_at_edge(end, move.compliance.compliant_axes, rollout))
-    return std::nullopt;
+  if (rests_at_edge(end, move.compliance.compliant_axes, rollout)) return std::nullopt;
   return Ended{end, result.move.travelled};
 }
 

@@ -19,8 +19,6 @@ namespace tenon::planner {
 /// depend on the order of calls, never on the number of threads. One thread at a time.
 class SuccessorEngine {
  public:
-  enum class Edges : std::uint8_t { kRefused, kTaken };
-
   struct Counters {
     std::uint64_t rollouts = 0;   ///< simulated moves
     std::uint64_t memo_hits = 0;  ///< moves that were already known
@@ -28,9 +26,7 @@ class SuccessorEngine {
   };
 
   /// @param pool must outlive this  @param move everything of a move but its displacement
-  /// @param edges whether a move after which a particle rests at an edge exists (edge_rest.h)
-  SuccessorEngine(RolloutPool& pool, const MoveParameters& move, std::int64_t step_us,
-                  Edges edges = Edges::kRefused);
+  SuccessorEngine(RolloutPool& pool, const MoveParameters& move, std::int64_t step_us);
 
   /// From now on moves that the arm cannot make do not exist. @param reach outlives this
   void within(MoveReach& reach) { reach_ = &reach; }
@@ -38,8 +34,8 @@ class SuccessorEngine {
   [[nodiscard]] MoveReach* reach() const { return reach_; }
 
   /// One belief for each primitive, in order. Empty where a particle's rollout failed or timed out,
-  /// or left it resting at an edge, or the arm cannot make it: such a move does not exist. All
-  /// rollouts that are missing run as one batch.
+  /// or left it resting at an edge (edge_rest.h), or the arm cannot make it: such a move does not
+  /// exist. All rollouts that are missing run as one batch.
   [[nodiscard]] std::vector<std::optional<Belief>> successors(
       const Belief& belief, std::span<const Primitive> primitives);
 
@@ -76,7 +72,6 @@ class SuccessorEngine {
   RolloutPool& pool_;
   MoveParameters move_;
   std::int64_t step_us_;
-  Edges edges_;
   MoveReach* reach_ = nullptr;
   std::map<Key, End> memo_;
   Counters counters_;

@@ -1,7 +1,10 @@
 #include "planner/judge/judged_starts.h"
 
+#include <algorithm>
+
 #include "planner/belief/belief.h"
 #include "shared/base/random.h"
+#include "shared/task/pose_error.h"
 #include "shared/task/spread.h"
 
 namespace tenon::planner {
@@ -27,7 +30,39 @@ std::vector<PhysicalParameters> corners(const Plan& plan, const Task& task) {
   return all;
 }
 
-JudgedStart draw_place(Random& random, const Task& task, const Start& start, Rollout& rollout) {
+/// None, and as far as it may be about each axis, either way: an odd number, so that taking turns
+/// ties none of them to a corner.
+std::vector<Vector6> extreme_tilts(const Task& task) {
+  std::vector<Vector6> tilts = {Vector6::Zero()};
+  for (const int axis : tilted_axes(task)) {
+    tilts.emplace_back(task.tilt_rad * Vector6::Unit(axis));
+    tilts.emplace_back(-task.tilt_rad * Vector6::Unit(axis));
+  }
+  return tilts;
+}
+
+/// Evenly from the ball of all tilts.
+Vector6 draw_tilt(Random& random, const Task& task) {
+  const std::vector<int> axes = tilted_axes(task);
+  Vector6 tilt = Vector6::Zero();
+  do {
+    for (const int axis : axes) tilt[axis] = random.uniform(-task.tilt_rad, task.tilt_rad);
+  } while (tilt.norm() > task.tilt_rad);
+  return tilt;
+}
+
+/// The particle in an environment that is turned, besides, about the goal.
+Particle tilted(const Particle& particle, const Vector6& tilt, const Task& task) {
+  Particle other = particle;
+  if (tilt.isZero()) return other;
+  const Vector3 goal_m = compose(particle.environment, task.goal).position_m;
+  other.environment = compose(environment_pose(tilt, goal_m), particle.environment);
+  return other;
+}
+
+/// @param tilt of its environment
+JudgedStart draw_place(Random& random, const Vector6& tilt, const Task& task, const Start& start,
+                       Rollout& rollout) {
   const bool uniform = task.errors == Distribution::kUniform;
   JudgedStart drawn;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -38,7 +73,7 @@ JudgedStart draw_place(Random& random, const Task& task, const Start& start, Rol
           uniform ? task.particle_sigmas * (2.0 * random.uniform() - 1.0) : random.normal();
       offset[axis] = z * start.sigma[axis];
     }
-    drawn.particle = particle_off(offset, task, start, {});
+    drawn.particle = tilted(particle_off(offset, task, start, {}), tilt, task);
     drawn.sigmas_out = sigmas_out(task, start, offset);
     if (drawn.sigmas_out > drawn_sigmas(task)) continue;
     if (!rollout.in_collision(drawn.particle.tool())) break;
@@ -73,11 +108,15 @@ std::vector<Vector6> rim_directions(const Task& task, const Start& start) {
 /// Those of a rim that do not collide, each with all of the parameters.
 std::vector<JudgedStart> starts_at(double sigmas, const std::vector<PhysicalParameters>& physics,
                                    const Task& task, const Start& start, Rollout& rollout) {
+  const std::vector<Vector6> tilts = extreme_tilts(task);
   std::vector<JudgedStart> starts;
   for (const Vector6& direction : rim_directions(task, start)) {
-    Particle particle = particle_off(sigmas * direction.cwiseProduct(start.sigma), task, start, {});
-    if (rollout.in_collision(particle.tool())) continue;
+    const Particle level =
+        particle_off(sigmas * direction.cwiseProduct(start.sigma), task, start, {});
+    if (rollout.in_collision(level.tool())) continue;
     for (const PhysicalParameters& one : physics) {
+      Particle particle = tilted(level, tilts[starts.size() % tilts.size()], task);
+      if (rollout.in_collision(particle.tool())) particle = level;
       particle.physics = one;
       starts.push_back({particle, sigmas});
     }
@@ -93,19 +132,51 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
   const std::vector<PhysicalParameters> extremes = corners(plan, task);
   Random random(seed);
   Random late(stream_seed(seed, "latency"));
+  Random turned(stream_seed(seed, "tilt"));
+  const std::vector<Vector6> tilts = extreme_tilts(task);
   std::vector<JudgedStart> starts;
   for (std::size_t i = 0; i < count; ++i) {
-    JudgedStart drawn = draw_place(random, task, start, rollout);
+    const bool at_corner = physics == DrawnPhysics::kCorners && i % 2 == 1;
+    const Vector6 even = draw_tilt(turned, task);
+    const Vector6& tilt = at_corner ? tilts[i / 2 % tilts.size()] : even;
+    JudgedStart drawn = draw_place(random, tilt, task, start, rollout);
     PhysicalParameters& p = drawn.particle.physics;
     p.contact_stiffness_Npm = plan.contact_stiffness_Npm;
     p.friction = random.uniform(task.friction.low, task.friction.high);
     if (task.oversize_m > 0.0) p.oversize_m = random.uniform() * task.oversize_m;
     p.latency_s = late.uniform() * latency_to_hold_s(task, plan.latency_max_s);
-    const bool at_corner = physics == DrawnPhysics::kCorners && i % 2 == 1;
     if (at_corner) p = extremes[i / 2 % extremes.size()];
     starts.push_back(drawn);
   }
   return starts;
+}
+
+std::vector<int> tilted_axes(const Task& task) {
+  std::vector<int> axes;
+  for (int axis = 3; axis < 6; ++axis) {
+    if (!has(task.coordinates, axis) && task.tilt_rad > 0.0) axes.push_back(axis);
+  }
+  return axes;
+}
+
+std::vector<double> tilts_to_hold(const Task& task) {
+  if (tilted_axes(task).empty()) return {0.0};
+  return {task.tilt_rad, 0.5 * task.tilt_rad, 0.0};
+}
+
+bool is_tilted(const Particle& start, const Task& task) {
+  const Vector3 turn_rad = rotation_vector(start.environment.orientation);
+  const std::vector<int> axes = tilted_axes(task);
+  return std::any_of(axes.begin(), axes.end(), [&](int axis) { return turn_rad[axis - 3] != 0.0; });
+}
+
+Particle without_tilt(const Particle& start, const Task& task) {
+  Vector6 turn = Vector6::Zero();
+  turn.tail<3>() = rotation_vector(start.environment.orientation);
+  for (const int axis : tilted_axes(task)) turn[axis] = 0.0;
+  Particle level = start;
+  level.environment = environment_pose(turn, task.error_about_m);
+  return level;
 }
 
 std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task, const Start& start,

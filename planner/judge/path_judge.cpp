@@ -32,7 +32,12 @@ std::vector<Chain> chains_of(const Certification& certification) {
 
 PathJudge::PathJudge(const Task& task, const Start& start, const Parameters& parameters,
                      RolloutPool& pool, ClockSeconds now_s)
-    : task_(task), start_(start), parameters_(parameters), pool_(pool), now_s_(std::move(now_s)) {}
+    : task_(task),
+      start_(start),
+      held_(task),
+      parameters_(parameters),
+      pool_(pool),
+      now_s_(std::move(now_s)) {}
 
 Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses) {
   missed_.clear();
@@ -41,10 +46,10 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses
   slow.method = parameters_.method;
   if (slow.method == PlanMethod::kMha) {
     const std::vector<Draw> looked =
-        run(slow, screening_starts(slow, task_, start_, pool_.front()), effort_.corners);
+        run(slow, screening_starts(slow, held_, start_, pool_.front()), effort_.corners);
     const bool all = misses == Misses::kAll;
     if (all) {
-      if (const auto miss = missed(looked)) return *miss;
+      if (const auto miss = missed(slow, looked)) return *miss;
     }
     if (missed_draw(looked, task_.particle_sigmas) == nullptr) {
       Judgement judgement = at_once(slow, good_chains(looked));
@@ -58,7 +63,7 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses
   if (!at_contact_speed.holds()) return refutation_of(at_contact_speed);
   if (slow.method != PlanMethod::kMha) {
     const Extremes extremes{
-        run(slow, corner_starts(slow, task_, start_, pool_.front()), effort_.corners),
+        run(slow, corner_starts(slow, held_, start_, pool_.front()), effort_.corners),
         rim_of(slow)};
     return estimated(slow, std::move(at_contact_speed), extremes);
   }
@@ -119,7 +124,7 @@ Judgement PathJudge::at_speeds(Candidate&& candidate, std::vector<double>& dista
   };
   if (!certification.holds()) return refuted(refutation_of(certification));
   Extremes extremes{corners_of(plan), {}};
-  if (const auto miss = missed(extremes.corners)) return refuted(*miss);
+  if (const auto miss = missed(plan, extremes.corners)) return refuted(*miss);
   extremes.rim = rim_of(plan);
   std::vector<Chain> good = good_chains(extremes.corners);
   append(good, good_chains(extremes.rim));
@@ -130,7 +135,7 @@ Judgement PathJudge::at_speeds(Candidate&& candidate, std::vector<double>& dista
   std::vector<Draw> draws;
   if (!shorten(plan, good, distances_m)) {
     draws = drawn(plan, kSearchSeed);
-    if (const auto miss = missed(draws)) return refuted(*miss);
+    if (const auto miss = missed(plan, draws)) return refuted(*miss);
     append(good, good_chains(draws));
   }
   if (draws.empty() || shorten(plan, good, distances_m)) {
@@ -154,7 +159,7 @@ std::variant<Plan, Refutation> PathJudge::widened(const Plan& plan, std::vector<
   Plan judged = with_envelopes(plan, task_, good);
   for (std::uint64_t batch = 0; batch < kEnvelopeBatches; ++batch) {
     const std::vector<Draw> further = drawn(plan, kEnvelopeSeed + batch);
-    if (const auto miss = missed(further)) return *miss;
+    if (const auto miss = missed(plan, further)) return *miss;
     const std::vector<Chain> more = good_chains(further);
     if (stay_within(judged, more)) break;
     append(good, more);
@@ -170,8 +175,16 @@ Judgement PathJudge::estimated(Plan plan, Certification certification, const Ext
                        drawn_starts(judging_seed(plan), parameters_.draws, DrawnPhysics::kEven,
                                     plan, task_, start_, pool_.front()),
                        effort_.validation);
-  estimate.corners = decided_by(plan, task_, extremes.corners);
-  estimate.rim = decided_by(plan, task_, extremes.rim);
+  if (held_.tilt_rad < tilts_to_hold(task_).front()) {
+    // With its envelopes, and centred, it may hold more.
+    hold_extremes(
+        plan, task_, start_, pool_.front(), estimate,
+        [&](std::span<const JudgedStart> starts) { return run(plan, starts, effort_.corners); });
+  } else {
+    estimate.corners = decided_by(plan, task_, extremes.corners);
+    estimate.rim = decided_by(plan, task_, extremes.rim);
+    estimate.tilt_rad = held_.tilt_rad;
+  }
   plan.cost = certification.cost;
   plan.draws = static_cast<std::uint32_t>(estimate.draws.size());
   plan.draws_at_goal = static_cast<std::uint32_t>(estimate.at_goal());
@@ -189,18 +202,18 @@ Certification PathJudge::certified(const Plan& plan) {
 }
 
 std::vector<Draw> PathJudge::corners_of(const Plan& plan) {
-  const auto starts = corner_starts(plan, task_, start_, pool_.front());
+  const auto starts = corner_starts(plan, held_, start_, pool_.front());
   return misses_ == Misses::kAll ? run(plan, starts, effort_.corners)
                                  : run_to_miss(plan, starts, effort_.corners);
 }
 
 std::vector<Draw> PathJudge::rim_of(const Plan& plan) {
-  return run(plan, rim_starts(plan, task_, start_, pool_.front()), effort_.validation);
+  return run(plan, rim_starts(plan, held_, start_, pool_.front()), effort_.validation);
 }
 
 std::vector<Draw> PathJudge::drawn(const Plan& plan, std::uint64_t seed) {
   return run_to_miss(plan,
-                     drawn_starts(seed, parameters_.draws, DrawnPhysics::kCorners, plan, task_,
+                     drawn_starts(seed, parameters_.draws, DrawnPhysics::kCorners, plan, held_,
                                   start_, pool_.front()),
                      effort_.validation);
 }
@@ -209,22 +222,33 @@ std::optional<Refutation> PathJudge::misses_again(const Plan& plan) {
   const std::vector<Draw> draws = run_to_miss(plan, missed_, effort_.corners);
   const Draw* miss = missed_draw(draws, task_.particle_sigmas);
   if (miss == nullptr) return std::nullopt;
-  return with_others(refutation_of(*miss, task_));
+  return told(plan, *miss);
 }
 
-std::optional<Refutation> PathJudge::missed(std::span<const Draw> draws) {
+std::optional<Refutation> PathJudge::missed(const Plan& plan, std::span<const Draw> draws) {
   const Draw* miss = missed_draw(draws, task_.particle_sigmas);
   if (miss == nullptr) return std::nullopt;
   for (const Draw& draw : draws) {
     if (!missed_draw({&draw, 1}, task_.particle_sigmas)) continue;
     missed_.push_back({draw.chain.start, draw.sigmas_out});
   }
-  return with_others(refutation_of(*miss, task_));
+  return told(plan, *miss);
 }
 
-Refutation PathJudge::with_others(Refutation refutation) const {
-  if (misses_ == Misses::kFirst) return refutation;
-  for (const JudgedStart& start : missed_) refutation.others.push_back(start.particle);
+Refutation PathJudge::told(const Plan& plan, const Draw& miss) {
+  Refutation refutation = refutation_of(miss, task_);
+  if (misses_ == Misses::kAll) {
+    for (const JudgedStart& start : missed_) refutation.others.push_back(start.particle);
+  }
+  std::vector<JudgedStart> levelled;
+  const auto level = [&](const Particle& start) {
+    if (is_tilted(start, task_)) levelled.push_back({without_tilt(start, task_), 0.0});
+  };
+  level(miss.chain.start);
+  for (const Particle& start : refutation.others) level(start);
+  const std::vector<Draw> draws =
+      run(plan, levelled, effort_.corners, [](const Draw& draw) { return draw.at_goal; });
+  refutation.by_tilt = arrived(draws) > 0;
   return refutation;
 }
 

@@ -52,6 +52,9 @@ class PathJudge {
   PathJudge(const Task& task, const Start& start, const Parameters& parameters, RolloutPool& pool,
             ClockSeconds now_s);
 
+  /// From now on starts refute that are tilted by up to so much; at first, by all of the task's.
+  void hold_tilt(double tilt_rad) { held_.tilt_rad = tilt_rad; }
+
   /// What of the starts at the corners a refutation tells.
   enum class Misses : std::uint8_t {
     kFirst,  ///< the first that misses the goal
@@ -97,13 +100,13 @@ class PathJudge {
   /// Where a start that this path has missed at other speeds or otherwise pressed, misses again.
   [[nodiscard]] std::optional<Refutation> misses_again(const Plan& plan);
   /// Of draws that may refute: the first miss. All are remembered.
-  [[nodiscard]] std::optional<Refutation> missed(std::span<const Draw> draws);
+  [[nodiscard]] std::optional<Refutation> missed(const Plan& plan, std::span<const Draw> draws);
   /// And all that this path has missed, where those are asked for.
-  [[nodiscard]] Refutation with_others(Refutation refutation) const;
+  [[nodiscard]] Refutation told(const Plan& plan, const Draw& miss);
   [[nodiscard]] Certification certified(const Plan& plan);
   [[nodiscard]] std::vector<Draw> rim_of(const Plan& plan);
   /// These and the draws may refute, and end with the first miss unless all are asked for; of the
-  /// draws every second one is at a corner of friction and size.
+  /// draws every second one is at a corner of friction, size, latency and tilt.
   [[nodiscard]] std::vector<Draw> corners_of(const Plan& plan);
   [[nodiscard]] std::vector<Draw> drawn(const Plan& plan, std::uint64_t seed);
   /// @param effort to which this adds
@@ -115,6 +118,7 @@ class PathJudge {
 
   const Task& task_;
   const Start& start_;
+  Task held_;  ///< the task, with the tilt that is held
   Parameters parameters_;
   RolloutPool& pool_;
   ClockSeconds now_s_;

@@ -1,9 +1,31 @@
 #include "planner/judge/refutation.h"
 
+#include <cmath>
+
+#include "planner/judge/judged_starts.h"
+#include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/task/spread.h"
 
 namespace tenon::planner {
+namespace {
+
+/// ", tilted by -0.17 degrees about z"; about no one axis: ", tilted by 0.12 degrees".
+std::string tilt_name(const Particle& start, const Task& task) {
+  Vector3 tilt_rad = Vector3::Zero();
+  for (const int axis : tilted_axes(task)) {
+    tilt_rad[axis - 3] = rotation_vector(start.environment.orientation)[axis - 3];
+  }
+  if (tilt_rad.isZero()) return {};
+  int most = 0;
+  tilt_rad.cwiseAbs().maxCoeff(&most);
+  const bool about_one = std::abs(tilt_rad[most]) == tilt_rad.norm();
+  const double told_rad = about_one ? tilt_rad[most] : tilt_rad.norm();
+  return format(", tilted by %.2f degrees", shown(told_rad, 3)) +
+         (about_one ? format(" about %c", "xyz"[most]) : "");
+}
+
+}  // namespace
 
 Refutation refutation_of(const Certification& certification) {
   const VariantRun& run = *certification.refuting();
@@ -18,15 +40,19 @@ Refutation refutation_of(const Certification& certification) {
 Refutation refutation_of(const Draw& missed, const Task& task) {
   return {missed.chain, std::nullopt,
           "a start " + out_text(task, missed.sigmas_out) + " missed the goal at " +
-              corner_name(missed.chain.start.physics, task)};
+              corner_name(missed.chain.start, task)};
 }
 
-std::string corner_name(const PhysicalParameters& corner, const Task& task) {
+std::string corner_name(const Particle& start, const Task& task) {
+  const PhysicalParameters& corner = start.physics;
   std::string name =
       format("friction %.3g, latency %.1f ms", corner.friction, 1e3 * corner.latency_s);
-  if (task.oversize_m <= 0.0) return name;
-  if (corner.oversize_m <= 0.0) return name + ", the part as drawn";
-  return name + format(", the part %.3g mm larger than drawn", 1e3 * corner.oversize_m);
+  if (task.oversize_m > 0.0) {
+    name += corner.oversize_m <= 0.0
+                ? ", the part as drawn"
+                : format(", the part %.3g mm larger than drawn", 1e3 * corner.oversize_m);
+  }
+  return name + tilt_name(start, task);
 }
 
 }  // namespace tenon::planner

@@ -17,6 +17,7 @@ struct Refutation {
   std::optional<std::size_t> step;  ///< at which the chain went wrong, where that is known
   std::string why;                  ///< one line
   std::vector<Particle> others{};   ///< starts that the path has missed, the chain's among them
+  bool by_tilt = false;             ///< one of these starts would not have missed without its tilt
 };
 
 /// The earliest disagreement. @param certification one that does not hold
@@ -25,7 +26,8 @@ struct Refutation {
 /// A draw that missed the goal, with the physics that it had.
 [[nodiscard]] Refutation refutation_of(const Draw& missed, const Task& task);
 
-/// "friction 0.6, latency 7.0 ms, the part 0.5 mm larger than drawn", for people.
-[[nodiscard]] std::string corner_name(const PhysicalParameters& corner, const Task& task);
+/// "friction 0.6, latency 7.0 ms, the part 0.5 mm larger than drawn, tilted by 0.17 degrees", for
+/// people.
+[[nodiscard]] std::string corner_name(const Particle& start, const Task& task);
 
 }  // namespace tenon::planner

@@ -80,15 +80,30 @@ std::vector<Draw> run_starts(const Plan& plan, const Task& task,
   return draws;
 }
 
+void hold_extremes(const Plan& plan, const Task& task, const Start& start, Rollout& rollout,
+                   Validation& validation,
+                   const std::function<std::vector<Draw>(std::span<const JudgedStart>)>& run) {
+  Task held = task;
+  for (const double tilt_rad : tilts_to_hold(task)) {
+    held.tilt_rad = validation.tilt_rad = tilt_rad;
+    validation.corners = run(corner_starts(plan, held, start, rollout));
+    const bool all = arrived(validation.corners) == validation.corners.size();
+    if (all || plan.method != PlanMethod::kMha) break;
+  }
+  validation.rim = run(rim_starts(plan, held, start, rollout));
+}
+
 Validation validate(const Plan& plan, const Task& task, const Start& start, std::size_t draws,
                     RolloutPool& pool) {
-  const auto run = [&](const std::vector<JudgedStart>& starts) {
+  const auto run = [&](std::span<const JudgedStart> starts) {
     return run_starts(plan, task, starts, pool);
   };
   Rollout& rollout = pool.front();
-  return {
-      run(drawn_starts(judging_seed(plan), draws, DrawnPhysics::kEven, plan, task, start, rollout)),
-      run(corner_starts(plan, task, start, rollout)), run(rim_starts(plan, task, start, rollout))};
+  Validation validation;
+  validation.draws =
+      run(drawn_starts(judging_seed(plan), draws, DrawnPhysics::kEven, plan, task, start, rollout));
+  hold_extremes(plan, task, start, rollout, validation, run);
+  return validation;
 }
 
 std::vector<Draw> decided_by(const Plan& plan, const Task& task, std::span<const Draw> draws) {

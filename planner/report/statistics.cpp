@@ -76,6 +76,7 @@ void add_plan(Json& json, const PlanReport& report, const Task& task) {
   json["wilson95_high"] = interval.high;
   json["corners"] = report.validation.corners.size();
   json["corners_at_goal"] = arrived(report.validation.corners);
+  json["corners_tilt_rad"] = report.validation.tilt_rad;
   json["beyond"] = report.validation.rim.size();
   json["beyond_at_goal"] = arrived(report.validation.rim);
   json["particle_sigmas"] = task.particle_sigmas;

@@ -62,6 +62,12 @@ std::string rules_text(const Plan& plan, const Step& step) {
   return text;
 }
 
+/// ", tilted by up to 0.17 degrees", or "by up to 0.09 of 0.17 degrees". @param held of it, rad
+std::string tilt_text(double held, double stated) {
+  const std::string most = format("%.2g degrees", shown(stated, 3));
+  return ", tilted by up to " + (held < stated ? format("%.2g of ", shown(held, 3)) : "") + most;
+}
+
 }  // namespace
 
 double peak_force_N(const PlanReport& report) {
@@ -113,11 +119,12 @@ std::string corners_text(const Validation& validation, const Task& task) {
   for (const Draw& corner : validation.corners) {
     latency_s = std::max(latency_s, corner.chain.start.physics.latency_s);
   }
-  std::string physics = format("friction %g and %g, latency 0 and %.1f ms", task.friction.low,
-                               task.friction.high, 1e3 * latency_s);
+  std::string physics = format("friction %g and %g", task.friction.low, task.friction.high);
+  if (latency_s > 0.0) physics += format(", latency 0 and %.1f ms", 1e3 * latency_s);
   if (task.oversize_m > 0.0) {
     physics += format(", the part as drawn and %g mm larger", 1e3 * task.oversize_m);
   }
+  if (!tilted_axes(task).empty()) physics += tilt_text(validation.tilt_rad, task.tilt_rad);
   return format("%zu of %zu starts ", arrived(validation.corners), validation.corners.size()) +
          reach_text(task) + " end at the goal, at " + physics;
 }

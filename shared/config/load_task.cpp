@@ -266,14 +266,20 @@ void read_search(const Value& value, Task& task) {
   map.optional_number("time_limit_s", positive_to(86'400.0), task.time_limit_s);
 }
 
+// What the calibration of an arm and its cell is commonly good to, 0.17 degrees.
+constexpr double kCalibrated_rad = 3e-3;
+
 void read_physics(const Value& value, Task& task) {
-  const Map map(value, {"friction", "contact_stiffness_Npm", "oversize_m", "rollout_step_s"});
+  const Map map(value,
+                {"friction", "contact_stiffness_Npm", "oversize_m", "tilt_rad", "rollout_step_s"});
   const Map friction(map.at("friction"), {"low", "nominal", "high"});
   task.friction.low = friction.number("low", {0.0, 2.0});
   task.friction.nominal = friction.number("nominal", {task.friction.low, 2.0});
   task.friction.high = friction.number("high", {task.friction.nominal, 2.0});
   task.contact_stiffness_Npm = map.number("contact_stiffness_Npm", {1e2, 1e8});
   map.optional_number("oversize_m", {0.0, 0.01}, task.oversize_m);
+  task.tilt_rad = kCalibrated_rad;
+  map.optional_number("tilt_rad", {0.0, 0.05}, task.tilt_rad);
 
   // A longer way within one step sinks too deep before the contact answers.
   constexpr double kStepTravelMax_m = 0.5e-3;

@@ -48,8 +48,7 @@ TEST(ContactPushes, ANarrowFaceIsMetOnceWhatLiesAcrossItIsSettled) {
   ASSERT_GT(task.particle_sigmas * where.sigma[1], 0.01);
   RolloutPool pool(WallRollout(ledge_world()), 1);
   const Belief start = cross_polytope(task, where);
-  SuccessorEngine succ(pool, search_move(task, where, {}), task.rollout_step_us,
-                       SuccessorEngine::Edges::kTaken);
+  SuccessorEngine succ(pool, search_move(task, where, {}), task.rollout_step_us);
   const std::vector<Guide> guides = find_attractors(task, start, succ, pool.front()).candidates;
   ASSERT_FALSE(guides.empty());
   EXPECT_EQ(std::count_if(guides.begin(), guides.end(),

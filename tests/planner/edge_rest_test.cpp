@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 
 #include "planner/belief/successor.h"
 #include "sim/physics/rollout/ode_rollout.h"
@@ -43,6 +44,39 @@ TEST(EdgeRest, TellsANarrowRestFromAWideOne) {
   EXPECT_TRUE(rests_at_edge(resting(0.25e-3), kTranslations, rollout));
   EXPECT_FALSE(rests_at_edge(resting(0.6e-3), kTranslations, rollout));
   EXPECT_FALSE(rests_at_edge(resting(60e-3), kTranslations, rollout));
+}
+
+/// Against the plate's side, its lower face so far below the plate's upper one.
+Particle caught(double depth_m) {
+  Particle particle = over(0.0, -depth_m);
+  particle.signature.bits = ContactSignature::bit(0, +1);
+  return particle;
+}
+
+// Of a peg over the mouth of a hole, say, that has sunk in by as much as it was pressed. Such a
+// contact, too slight for a collision, was taken for a firm one.
+TEST(EdgeRest, TellsASlightCatchFromAFirmOne) {
+  sim::OdeRollout rollout(part_and_plate());
+  EXPECT_TRUE(rests_at_edge(caught(0.05e-3), kTranslations, rollout));
+  EXPECT_TRUE(rests_at_edge(caught(0.25e-3), kTranslations, rollout));
+  EXPECT_FALSE(rests_at_edge(caught(0.6e-3), kTranslations, rollout));
+  EXPECT_FALSE(rests_at_edge(caught(20e-3), kTranslations, rollout));
+}
+
+/// On a plate that slopes up by 80 degrees along x: pressed along z it goes in by little.
+TEST(EdgeRest, ASteepFaceIsNoSlightCatch) {
+  Task task = part_and_plate();
+  task.held = {
+      {"block", Shape::Kind::kBox, {0.04, 0.04, 0.04}, {{0, 0, 0}, rotation_of({0, -1.4, 0})}}};
+  task.environment = {
+      {"slope",
+       Shape::Kind::kBox,
+       {0.2, 0.2, 0.2},
+       {{0.12 * std::sin(1.4), 0.0, -0.12 * std::cos(1.4)}, rotation_of({0, -1.4, 0})}}};
+  sim::OdeRollout rollout(task);
+  Particle particle;
+  particle.signature.bits = ContactSignature::bit(2, +1);
+  EXPECT_FALSE(rests_at_edge(particle, 0b100, rollout));
 }
 
 TEST(EdgeRest, AsksOnlyAboutAxesThatYield) {

@@ -131,8 +131,7 @@ struct FollowedRoom {
         rollout(room()),
         pool(rollout, 1),
         start(cross_polytope(task, task.starts.front())),
-        succ(pool, search_move(task, task.starts.front(), {}), task.rollout_step_us,
-             SuccessorEngine::Edges::kTaken) {}
+        succ(pool, search_move(task, task.starts.front(), {}), task.rollout_step_us) {}
 
   [[nodiscard]] std::optional<std::vector<Vector6>> follow(const Guide& guide) {
     return follow_guide(guide, task, start, task.starts.front().pose, succ, pool.front(), &left);
@@ -220,8 +219,7 @@ TEST(FollowGuide, MakesNoTouchAgainThatTellsNothingNew) {
   LeaningRoom rollout;
   RolloutPool pool(rollout, 1);
   const Start& from = task.starts.front();
-  SuccessorEngine succ(pool, search_move(task, from, {}), task.rollout_step_us,
-                       SuccessorEngine::Edges::kTaken);
+  SuccessorEngine succ(pool, search_move(task, from, {}), task.rollout_step_us);
   const Guide guide{{wall(2, -1, -1.0), wall(1, -1, -0.4), wall(0, -1, -0.5)}, {task.goal}, 1.0};
   std::string left;
   const auto way =

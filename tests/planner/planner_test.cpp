@@ -221,6 +221,34 @@ TEST(Planner, IsJudgedByDrawsThatItsSearchHasNotSeen) {
   }
 }
 
+// A wall that stands elsewhere for a tilted start leaves it as uncertain as it was.
+TEST(Planner, WhatNoPlanBearsOfTheTiltIsToldAndHalfOfItHeldOrNone) {
+  Task task = room_task();
+  task.tilt_rad = 2e-4;
+  const std::uint64_t untilted = planned(room_task()).search_moves.rollouts;
+  for (const double share : {1.0, 0.5, 0.0}) {
+    WallRollout::World world = room();
+    world.narrow_beyond_tilt_rad = (share + 0.01) * task.tilt_rad;
+    PlannerOptions options;
+    // What needs more than one round holds for each of the tilts.
+    options.rounds_max = 2;
+    const PlanReport report = planned(task, world, options);
+    ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+    const Validation& validation = report.validation;
+    EXPECT_EQ(validation.tilt_rad, share * task.tilt_rad);
+    EXPECT_EQ(arrived(validation.corners), validation.corners.size());
+    EXPECT_EQ(validation.at_goal() < validation.draws.size(), share < 1.0)
+        << "draws have all of it";
+    // From the file alone the same is found.
+    RolloutPool pool(WallRollout(world), 1);
+    const Validation again = validate(*report.plan, task, task.starts.front(), kDrawsMin, pool);
+    EXPECT_EQ(again.tilt_rad, validation.tilt_rad);
+    EXPECT_EQ(again.at_goal(), validation.at_goal());
+    // It gives up in time: there is no end to looking for walls that are not there.
+    EXPECT_LT(report.search_moves.rollouts, 20 * untilted) << share;
+  }
+}
+
 TEST(Planner, APlanThatDiesByTheArmsLatencyIsRefuted) {
   Task task = room_task();
   task.guide_moves = true;

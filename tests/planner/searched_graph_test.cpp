@@ -17,8 +17,7 @@ struct Graph {
   explicit Graph(bool carried_axes = false)
       : task(carried(carried_axes)),
         pool(WallRollout(room()), 1),
-        succ(pool, search_move(task, task.starts.front(), {}), task.rollout_step_us,
-             SuccessorEngine::Edges::kTaken),
+        succ(pool, search_move(task, task.starts.front(), {}), task.rollout_step_us),
         searched(task, cross_polytope(task, task.starts.front()), {}, succ) {}
 
   [[nodiscard]] Particle aside(double way_m) const {

@@ -119,8 +119,7 @@ struct Turns {
       : task(std::move(what)),
         start(task.starts.front()),
         pool(rollout, 1),
-        succ(pool, search_move(task, start, {}), task.rollout_step_us,
-             SuccessorEngine::Edges::kTaken) {}
+        succ(pool, search_move(task, start, {}), task.rollout_step_us) {}
 
   [[nodiscard]] std::vector<Guide> find() {
     return TouchTurns(task, corner_belief(task, start), start.pose, succ, pool.front(), {}).find();

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <set>
 
+#include "planner/belief/belief.h"
 #include "planner/judge/refutation.h"
 #include "tests/planner/room_plan.h"
 
@@ -117,6 +120,74 @@ TEST(Validation, ALookAtTheCornersHasEachOfThemOnceAndEveryPhysicsOnEverySide) {
   }
 }
 
+/// Rotation vectors of the environments.
+std::vector<Vector3> turns_of(const std::vector<JudgedStart>& starts) {
+  std::vector<Vector3> turns;
+  for (const JudgedStart& start : starts) {
+    turns.push_back(rotation_vector(start.particle.environment.orientation));
+  }
+  return turns;
+}
+
+TEST(Validation, CornersAreTiltedInTurnAboutEveryAxisThatIsNoCoordinate) {
+  Task task = room_task();
+  task.coordinates = 0b010011;  // x, y and ry
+  task.tilt_rad = 2e-3;
+  task.starts.front().sigma[4] = 0.1;
+  const Particle turned =
+      particle_off(0.1 * Vector6::Unit(4), task, task.starts.front(), PhysicalParameters{});
+  EXPECT_FALSE(is_tilted(turned, task)) << "a coordinate";
+  task.starts.front().sigma[4] = 0.0;
+  WallRollout rollout(room());
+  std::map<double, std::set<std::array<double, 3>>> tilts;  // by friction
+  for (const JudgedStart& start : corner_starts(Plan{}, task, task.starts.front(), rollout)) {
+    const Vector3 turn = turns_of({start}).front();
+    tilts[start.particle.physics.friction].insert({turn.x(), turn.y(), turn.z()});
+    EXPECT_EQ(is_tilted(start.particle, task), !turn.isZero());
+    EXPECT_FALSE(is_tilted(without_tilt(start.particle, task), task));
+    // About the goal, which stays where it is.
+    EXPECT_LT(
+        (compose(start.particle.environment, task.goal).position_m - task.goal.position_m).norm(),
+        1e-12);
+  }
+  ASSERT_EQ(tilts.size(), 2U);
+  for (const auto& [friction, some] : tilts) {
+    ASSERT_EQ(some.size(), 5U) << "of friction " << friction;
+    for (const auto& [x, y, z] : some) {
+      EXPECT_EQ(y, 0.0);
+      EXPECT_TRUE(x == 0.0 || z == 0.0);
+      EXPECT_TRUE((x == 0.0 && z == 0.0) || std::abs(std::hypot(x, z) - 2e-3) < 1e-12);
+    }
+  }
+}
+
+TEST(Validation, DrawsAreTiltedByAnythingUpToTheTasksTilt) {
+  Task task = room_task();
+  task.tilt_rad = 2e-3;
+  WallRollout rollout(room());
+  const auto drawn = [&] {
+    return drawn_starts(5, 300, DrawnPhysics::kEven, Plan{}, task, task.starts.front(), rollout);
+  };
+  const std::vector<JudgedStart> tilted = drawn();
+  Vector3 low = Vector3::Zero();
+  Vector3 high = Vector3::Zero();
+  for (const Vector3& turn : turns_of(tilted)) {
+    EXPECT_LE(turn.norm(), 2e-3);
+    low = low.cwiseMin(turn);
+    high = high.cwiseMax(turn);
+  }
+  EXPECT_LT(low.maxCoeff(), -1.5e-3);
+  EXPECT_GT(high.minCoeff(), 1.5e-3);
+  // Nothing else of them changes.
+  task.tilt_rad = 0.0;
+  const std::vector<JudgedStart> level = drawn();
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    EXPECT_EQ(level[i].particle.pose, tilted[i].particle.pose);
+    EXPECT_EQ(level[i].particle.physics, tilted[i].particle.physics);
+    EXPECT_EQ(level[i].particle.environment, Pose{});
+  }
+}
+
 TEST(Validation, APlanIsJudgedByDrawsThatItsOwnBytesChoose) {
   const Task task = room_task();
   const Plan plan = *planned_by(20, task).plan;
@@ -177,6 +248,17 @@ TEST(Validation, TheFirstDrawWithinReachThatMissedSpeaksWithThePhysicsThatItHad)
   EXPECT_EQ(refutation_of(draws[2], task).why,
             "a start 1.50 sigma out missed the goal at friction 0.6, latency 7.0 ms, the part 1 mm "
             "larger than drawn");
+
+  task.tilt_rad = 3e-3;
+  Pose& environment = draws[2].chain.start.environment;
+  const auto ends_in = [&](const std::string& end) {
+    return refutation_of(draws[2], task).why.ends_with(end);
+  };
+  EXPECT_TRUE(ends_in("larger than drawn"));
+  environment.orientation = rotation_of({0.0, 0.0, -3e-3});
+  EXPECT_TRUE(ends_in("larger than drawn, tilted by -0.17 degrees about z"));
+  environment.orientation = rotation_of({1e-3, 2e-3, 0.0});
+  EXPECT_TRUE(ends_in("larger than drawn, tilted by 0.13 degrees"));
 }
 
 TEST(Validation, AStartOnTheRimThatCollidesIsLeftOut) {

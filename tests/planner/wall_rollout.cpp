@@ -26,15 +26,14 @@ RolloutResult WallRollout::simulate(const Particle& particle, const MoveParamete
       signature.bits &= static_cast<std::uint16_t>(~ContactSignature::bit(axis, environment));
     }
   }
-  Vector3 low_m = world_.low_m;
-  const double y_m = particle.pose.position_m.y();
-  if (y_m > world_.ledge_from_y_m && y_m < world_.ledge_to_y_m) low_m.x() += world_.ledge_m;
+  const auto [low_m, high_m] =
+      walls(particle.pose.position_m.y(), particle.environment.orientation);
   // The nearest wall along the way stops everything.
   double part = 1.0;
   int stopping_axis = -1;
   for (int axis = 0; axis < 3; ++axis) {
     if (way_m[axis] == 0.0) continue;
-    const double wall_m = way_m[axis] > 0.0 ? world_.high_m[axis] : low_m[axis];
+    const double wall_m = way_m[axis] > 0.0 ? high_m[axis] : low_m[axis];
     const double room = (wall_m - particle.pose.position_m[axis]) / way_m[axis];
     if (room < part) {
       part = std::max(0.0, room);
@@ -48,8 +47,7 @@ RolloutResult WallRollout::simulate(const Particle& particle, const MoveParamete
   if (stopping_axis >= 0) {
     result.move.outcome = Outcome::kContact;
     const bool up = way_m[stopping_axis] > 0.0;
-    result.move.pose.position_m[stopping_axis] =
-        up ? world_.high_m[stopping_axis] : low_m[stopping_axis];
+    result.move.pose.position_m[stopping_axis] = up ? high_m[stopping_axis] : low_m[stopping_axis];
     signature.bits |= ContactSignature::bit(stopping_axis, up ? -1 : +1);
     result.touching = {up ? "point-high" : "point-low"};
   }
@@ -58,9 +56,20 @@ RolloutResult WallRollout::simulate(const Particle& particle, const MoveParamete
   return result;
 }
 
+WallRollout::Walls WallRollout::walls(double y_m, const Eigen::Quaterniond& turn) const {
+  Walls walls{world_.low_m, world_.high_m};
+  if (y_m > world_.ledge_from_y_m && y_m < world_.ledge_to_y_m) walls.low_m.x() += world_.ledge_m;
+  if (rotation_vector(turn).norm() > world_.narrow_beyond_tilt_rad) {
+    walls.low_m.x() += world_.narrower_m;
+    walls.high_m.x() -= world_.narrower_m;
+  }
+  return walls;
+}
+
 bool WallRollout::in_collision(const Pose& tool_pose) {
   const Vector3& p = tool_pose.position_m;
-  return (p.array() < world_.low_m.array()).any() || (p.array() > world_.high_m.array()).any();
+  const auto [low_m, high_m] = walls(p.y(), tool_pose.orientation);
+  return (p.array() < low_m.array()).any() || (p.array() > high_m.array()).any();
 }
 
 }  // namespace tenon::planner

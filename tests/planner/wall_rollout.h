@@ -31,6 +31,9 @@ class WallRollout final : public Rollout {
     double ledge_to_y_m = 0.0;
     /// Moves that would start beyond this x fail, as physics that broke down.
     double broken_beyond_x_m = std::numeric_limits<double>::infinity();
+    /// Where the environment is turned by more, the walls along x stand this much farther in.
+    double narrow_beyond_tilt_rad = std::numeric_limits<double>::infinity();
+    double narrower_m = 0.02;
   };
 
   explicit WallRollout(const World& world) : world_(world) {}
@@ -44,6 +47,13 @@ class WallRollout final : public Rollout {
   }
 
  private:
+  struct Walls {
+    Vector3 low_m;
+    Vector3 high_m;
+  };
+  /// As a tool finds them. @param turn of the environment to the tool
+  [[nodiscard]] Walls walls(double y_m, const Eigen::Quaterniond& turn) const;
+
   World world_;
 };
 

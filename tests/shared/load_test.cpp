@@ -103,7 +103,11 @@ TEST(LoadTask, ReadsEveryValue) {
   EXPECT_EQ(task.move_weight, 0.0);
   EXPECT_EQ(task.friction.high, 0.6);
   EXPECT_EQ(task.oversize_m, 2.5e-4);
+  EXPECT_EQ(task.tilt_rad, 3e-3) << "as calibration is commonly good to";
   EXPECT_EQ(task.rollout_step_us, 2000);
+
+  const std::string level = replaced(kTinyTask, "  oversize_m: 2.5e-4\n", "  tilt_rad: 0\n");
+  EXPECT_EQ(load_task(folder.put("level.yaml", level)).tilt_rad, 0.0);
 
   // A fast tool gets a step in which it goes no further than 0.5 mm.
   const std::string fast = replaced(replaced(kTinyTask, "  rollout_step_s: 0.002\n", ""),
@@ -218,6 +222,8 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
       {"high: 0.6", "high: 0.2", ":22: physics.friction.high = 0.2, must be in [0.3, 2]"},
       {"oversize_m: 2.5e-4", "oversize_m: 0.02",
        ":24: physics.oversize_m = 0.02, must be in [0, 0.01]"},
+      {"rollout_step_s: 0.002", "tilt_rad: 0.06",
+       ":25: physics.tilt_rad = 0.06, must be in [0, 0.05]"},
       {"rollout_step_s: 0.002", "rollout_step_s: 0.006",
        ":25: physics.rollout_step_s = 0.006, must be in [0.0001, 0.005]"},
       {"coordinates: [x, rz]", "coordinates: [x, rz",

@@ -1,0 +1,49 @@
+#pragma once
+// For how long plans are looked for that bear one tilt, in simulated moves, before a smaller one is
+// all that is held. One thread.
+
+#include <cstdint>
+#include <optional>
+
+#include "planner/belief/successor.h"
+
+namespace tenon::planner {
+
+class TiltEffort {
+ public:
+  /// From now on another tilt is held.
+  /// @param moves simulated so far, as everywhere here  @param search counters of the search
+  void begin(std::uint64_t moves, const SuccessorEngine::Counters& search) {
+    if (refuted()) searched_before_ = search.rollouts + search.memo_hits;
+    began_at_ = moves;
+    refuted_at_.reset();
+  }
+
+  /// A path was refuted. @param by_tilt see Refutation
+  void refute(bool by_tilt, std::uint64_t moves) {
+    if (!by_tilt || refuted()) return;
+    refuted_at_ = moves;
+    if (allowed_ == 0) allowed_ = moves - began_at_;
+  }
+
+  [[nodiscard]] bool refuted() const { return refuted_at_.has_value(); }
+  /// Once the tilt has refuted a path, others are looked for with as many moves again as it took to
+  /// find the first path that any tilt refuted.
+  [[nodiscard]] bool spent(std::uint64_t moves) const {
+    return refuted() && moves >= *refuted_at_ + allowed_;
+  }
+
+  /// Moves of the search with this tilt: those that a larger one has left known are among them.
+  [[nodiscard]] std::uint64_t searched(const SuccessorEngine::Counters& search) const {
+    if (!searched_before_) return search.rollouts;
+    return search.rollouts + search.memo_hits - *searched_before_;
+  }
+
+ private:
+  std::uint64_t began_at_ = 0;
+  std::optional<std::uint64_t> refuted_at_;
+  std::uint64_t allowed_ = 0;
+  std::optional<std::uint64_t> searched_before_;  ///< with larger tilts
+};
+
+}  // namespace tenon::planner
