@@ -133,8 +133,8 @@ class Planning {
 
   /// In the cell, by its arm where one is asked.
   [[nodiscard]] Belief held(Belief belief) const {
-    Belief held = in_cell(std::move(belief), task_, assumptions_.contact_stiffness_Npm,
-                          assumptions_.latency_max_s);
+    Belief held =
+        in_cell(std::move(belief), assumptions_.contact_stiffness_Npm, assumptions_.latency_max_s);
     if (reach_) held.arm = reach_->start();
     return held;
   }

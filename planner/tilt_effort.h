@@ -17,20 +17,23 @@ class TiltEffort {
     if (refuted()) searched_before_ = search.rollouts + search.memo_hits;
     began_at_ = moves;
     refuted_at_.reset();
+    paths_ = 0;
   }
 
   /// A path was refuted. @param by_tilt see Refutation
   void refute(bool by_tilt, std::uint64_t moves) {
-    if (!by_tilt || refuted()) return;
-    refuted_at_ = moves;
+    if (!by_tilt) return;
     if (allowed_ == 0) allowed_ = moves - began_at_;
+    refuted_at_ = moves;
+    ++paths_;
   }
 
   [[nodiscard]] bool refuted() const { return refuted_at_.has_value(); }
-  /// Once the tilt has refuted a path, others are looked for with as many moves again as it took to
-  /// find the first path that any tilt refuted.
+  /// Once the tilt has refuted a path, another is looked for with as many moves again as it took to
+  /// find the first path that any tilt refuted, and so on from each that is found and refuted, up
+  /// to kPathsMax of them.
   [[nodiscard]] bool spent(std::uint64_t moves) const {
-    return refuted() && moves >= *refuted_at_ + allowed_;
+    return refuted() && (paths_ >= kPathsMax || moves >= *refuted_at_ + allowed_);
   }
 
   /// Moves of the search with this tilt: those that a larger one has left known are among them.
@@ -40,9 +43,12 @@ class TiltEffort {
   }
 
  private:
+  static constexpr int kPathsMax = 8;
+
   std::uint64_t began_at_ = 0;
-  std::optional<std::uint64_t> refuted_at_;
+  std::optional<std::uint64_t> refuted_at_;  ///< the last time
   std::uint64_t allowed_ = 0;
+  int paths_ = 0;
   std::optional<std::uint64_t> searched_before_;  ///< with larger tilts
 };
 

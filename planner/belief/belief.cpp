@@ -87,16 +87,11 @@ Belief start_belief(const Task& task, const Start& start, PlanMethod method) {
   return method == PlanMethod::kMha ? cross_polytope(task, start) : single_particle(task, start);
 }
 
-double latency_to_hold_s(const Task& task, double latency_max_s) {
-  return task.guide_moves ? latency_max_s : 0.0;
-}
-
-Belief in_cell(Belief belief, const Task& task, double contact_stiffness_Npm,
-               double latency_max_s) {
+Belief in_cell(Belief belief, double contact_stiffness_Npm, double latency_max_s) {
   bool late = false;
   for (Particle& particle : belief.particles) {
     particle.physics.contact_stiffness_Npm = contact_stiffness_Npm;
-    particle.physics.latency_s = late ? latency_to_hold_s(task, latency_max_s) : 0.0;
+    particle.physics.latency_s = late ? latency_max_s : 0.0;
     late = !late;
   }
   return belief;

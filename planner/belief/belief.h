@@ -56,17 +56,9 @@ struct Metric {
 /// What a method plans for: all of the cross-polytope, or the single particle.
 [[nodiscard]] Belief start_belief(const Task& task, const Start& start, PlanMethod method);
 
-/// Up to which latency a plan has to hold in search and judgement. None where the task brings its
-/// own `primitives`, exactly the paper's: a lattice has few ways, and hardly ever one that both a
-/// late and a prompt arm go.
-[[nodiscard]] double latency_to_hold_s(const Task& task, double latency_max_s);
-
 /// The belief in a cell: its contact stiffness, and of its latency the two extremes, none and the
-/// longest, in turns. The first particle, and so a single one, has none; nor has any where the
-/// moves are the task's own choice, and the search learns of late arms from the paths that they
-/// refute.
-[[nodiscard]] Belief in_cell(Belief belief, const Task& task, double contact_stiffness_Npm,
-                             double latency_max_s);
+/// longest, in turns. The first particle, and so a single one, has none.
+[[nodiscard]] Belief in_cell(Belief belief, double contact_stiffness_Npm, double latency_max_s);
 
 /// Of the tools in the task frame as it really stands: mean position, and the rotation from which
 /// the rotation vectors to all others sum up to zero.

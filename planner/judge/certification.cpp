@@ -124,9 +124,9 @@ std::vector<CertificationVariant> certification_variants(const Task& task, const
     variants.push_back({"lowest friction", task.friction.low, {}, {}, step_us});
     variants.push_back({"highest friction", task.friction.high, {}, {}, step_us});
     if (task.oversize_m > 0.0) variants.push_back({"as drawn", {}, 0.0, {}, step_us});
-    if (const double latency_s = latency_to_hold_s(task, plan.latency_max_s); latency_s > 0.0) {
+    if (plan.latency_max_s > 0.0) {
       variants.push_back({"no latency", {}, {}, 0.0, step_us});
-      variants.push_back({"longest latency", {}, {}, latency_s, step_us});
+      variants.push_back({"longest latency", {}, {}, plan.latency_max_s, step_us});
     }
   }
   return variants;
@@ -194,7 +194,7 @@ Certification certify(std::span<const std::uint8_t> bytes, const Task& task, Rol
   }
   const Plan& plan = *decoded.plan;
   check_same_task(plan, task);
-  const Belief belief = in_cell(start_belief(task, start_of(plan, task), plan.method), task,
+  const Belief belief = in_cell(start_belief(task, start_of(plan, task), plan.method),
                                 plan.contact_stiffness_Npm, plan.latency_max_s);
   const std::size_t particles = belief.particles.size();
 

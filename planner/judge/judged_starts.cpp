@@ -17,8 +17,7 @@ constexpr int kAttempts = 1000;
 /// then as drawn where that is something else.
 std::vector<PhysicalParameters> corners(const Plan& plan, const Task& task) {
   std::vector<double> latencies_s = {0.0};
-  const double longest_s = latency_to_hold_s(task, plan.latency_max_s);
-  if (longest_s > 0.0) latencies_s.push_back(longest_s);
+  if (plan.latency_max_s > 0.0) latencies_s.push_back(plan.latency_max_s);
   std::vector<PhysicalParameters> all;
   for (const double friction : {task.friction.low, task.friction.high}) {
     for (const double latency_s : latencies_s) {
@@ -27,6 +26,12 @@ std::vector<PhysicalParameters> corners(const Plan& plan, const Task& task) {
       all.push_back({friction, plan.contact_stiffness_Npm, 0.0, latency_s});
     }
   }
+  return all;
+}
+
+/// Those of the corners with the largest part.
+std::vector<PhysicalParameters> largest(std::vector<PhysicalParameters> all, const Task& task) {
+  std::erase_if(all, [&](const auto& one) { return one.oversize_m != task.oversize_m; });
   return all;
 }
 
@@ -144,7 +149,7 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
     p.contact_stiffness_Npm = plan.contact_stiffness_Npm;
     p.friction = random.uniform(task.friction.low, task.friction.high);
     if (task.oversize_m > 0.0) p.oversize_m = random.uniform() * task.oversize_m;
-    p.latency_s = late.uniform() * latency_to_hold_s(task, plan.latency_max_s);
+    p.latency_s = late.uniform() * plan.latency_max_s;
     if (at_corner) p = extremes[i / 2 % extremes.size()];
     starts.push_back(drawn);
   }
@@ -199,14 +204,32 @@ std::vector<JudgedStart> screening_starts(const Plan& plan, const Task& task, co
   return some;
 }
 
+std::vector<JudgedStart> passage_starts(const Plan& plan, const Task& task, const Start& start,
+                                        Rollout& rollout) {
+  const std::vector<PhysicalParameters> physics = corners(plan, task);
+  const std::vector<Vector6> tilts = extreme_tilts(task);
+  Task level = task;
+  level.tilt_rad = 0.0;
+  const std::vector<JudgedStart> rim =
+      starts_at(task.particle_sigmas, {PhysicalParameters{}}, level, start, rollout);
+  if (rim.empty()) return {};
+  // Of each tilt an even number, half of them with either size.
+  const std::size_t each = 2 * ((rim.size() - 1) / tilts.size() + 1);
+  std::vector<JudgedStart> starts;
+  for (std::size_t i = 0; i < each * tilts.size(); ++i) {
+    const JudgedStart& from = rim[i % rim.size()];
+    Particle particle = tilted(from.particle, tilts[i / each], task);
+    if (rollout.in_collision(particle.tool())) particle = from.particle;
+    particle.physics = physics[(2 * i + i % 2) % physics.size()];
+    starts.push_back({particle, from.sigmas_out});
+  }
+  return starts;
+}
+
 std::vector<JudgedStart> rim_starts(const Plan& plan, const Task& task, const Start& start,
                                     Rollout& rollout) {
   if (drawn_sigmas(task) <= task.particle_sigmas) return {};
-  std::vector<PhysicalParameters> largest;
-  for (const PhysicalParameters& one : corners(plan, task)) {
-    if (one.oversize_m == task.oversize_m) largest.push_back(one);
-  }
-  return starts_at(drawn_sigmas(task), largest, task, start, rollout);
+  return starts_at(drawn_sigmas(task), largest(corners(plan, task), task), task, start, rollout);
 }
 
 }  // namespace tenon::planner

@@ -52,6 +52,11 @@ enum class DrawnPhysics : std::uint8_t {
 [[nodiscard]] std::vector<JudgedStart> screening_starts(const Plan& plan, const Task& task,
                                                         const Start& start, Rollout& rollout);
 
+/// All of the rim's, each twice at least, with each tilt of corner_starts() as often, at the
+/// corners of friction, size and latency in turn, and of each tilt half with the largest part.
+[[nodiscard]] std::vector<JudgedStart> passage_starts(const Plan& plan, const Task& task,
+                                                      const Start& start, Rollout& rollout);
+
 /// As corner_starts() where drawing ends, one standard deviation farther, with the largest part;
 /// none where errors are uniform.
 [[nodiscard]] std::vector<JudgedStart> rim_starts(const Plan& plan, const Task& task,

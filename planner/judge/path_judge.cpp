@@ -6,6 +6,7 @@
 #include "planner/judge/approach_speeds.h"
 #include "planner/judge/envelopes.h"
 #include "planner/judge/last_move.h"
+#include "planner/judge/passage.h"
 #include "planner/judge/plain_touches.h"
 #include "shared/plan/codec.h"
 
@@ -14,6 +15,8 @@ namespace {
 
 // How often the approach distances of a path may be lowered before it runs at contact speed.
 constexpr int kSpeedAttempts = 2;
+// Of the tilt that a plan holds: most cells have no more.
+constexpr double kUsualTilt = 0.5;
 // How often envelopes may be widened to more draws.
 constexpr std::uint64_t kEnvelopeBatches = 4;
 
@@ -80,7 +83,14 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses
 }
 
 Judgement PathJudge::at_once(const Plan& slow, std::span<const Chain> chains) {
-  const Plan plain = with_plain_touches(slow, chains).value_or(slow);
+  Plan plain = with_plain_touches(slow, chains).value_or(slow);
+  std::vector<Chain> again;
+  if (auto centred = passage_centred(plain, chains)) {
+    plain = *std::move(centred);
+    again = good_chains(
+        run(plain, screening_starts(plain, held_, start_, pool_.front()), effort_.corners));
+    if (!again.empty()) chains = again;
+  }
   std::vector<double> distances_m = slow_from(plain, chains, task_.particle_sigmas);
   Judgement judgement = Refutation{};
   for (int attempt = 0; attempt < kSpeedAttempts; ++attempt) {
@@ -91,6 +101,18 @@ Judgement PathJudge::at_once(const Plan& slow, std::span<const Chain> chains) {
     if (std::holds_alternative<JudgedPlan>(judgement) || !any_fast(distances_m)) break;
   }
   return judgement;
+}
+
+std::optional<Plan> PathJudge::passage_centred(const Plan& plan, std::span<const Chain> chains) {
+  Task usual = held_;
+  usual.tilt_rad *= kUsualTilt;
+  const PassageStarts starts{passage_starts(plan, usual, start_, pool_.front()),
+                             passage_starts(plan, held_, start_, pool_.front())};
+  const RunStarts run_them = [this](const Plan& tried, std::span<const JudgedStart> some,
+                                    const std::function<bool(const Draw&)>& until) {
+    return run(tried, some, effort_.corners, until);
+  };
+  return with_passage_centred(plan, chains, task_, starts, pool_.front(), run_them);
 }
 
 Judgement PathJudge::at_any_speed(Candidate slow) {

@@ -1,8 +1,8 @@
 #pragma once
-// Whether a path becomes a plan: certified from its very bytes, its touches plain and its approach
-// fast where that holds, its last move centred on the goal, validated by draws, and given
-// envelopes. What does not hold comes back as a refutation; what to learn from it is not decided
-// here.
+// Whether a path becomes a plan: certified from its very bytes, its touches plain, its way in
+// centred and its approach fast where that holds, its last move centred on the goal, validated by
+// draws, and given envelopes. What does not hold comes back as a refutation; what to learn from it
+// is not decided here.
 
 #include <cstddef>
 #include <cstdint>
@@ -83,8 +83,12 @@ class PathJudge {
 
   /// Certified, and if it holds with its last move centred, where that holds as well.
   [[nodiscard]] Candidate centred(Plan plan, Certification certification);
-  /// Plain, fast and centred by what chains at contact speed show, and certified as that alone.
+  /// Plain, fast and centred, at its end and on the way in, by what chains at contact speed show,
+  /// and certified as that alone.
   [[nodiscard]] Judgement at_once(const Plan& slow, std::span<const Chain> chains);
+  /// Placed in the middle of what lets the part in, where that is another place.
+  [[nodiscard]] std::optional<Plan> passage_centred(const Plan& plan,
+                                                    std::span<const Chain> chains);
   /// As fast as it holds, else at contact speed. @param slow certified at contact speed
   [[nodiscard]] Judgement at_any_speed(Candidate slow);
   /// Where the plan does not hold at its speeds, the distances are lowered, to be tried next. At

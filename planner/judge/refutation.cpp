@@ -5,6 +5,7 @@
 #include "planner/judge/judged_starts.h"
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
+#include "shared/task/inserted.h"
 #include "shared/task/spread.h"
 
 namespace tenon::planner {
@@ -40,7 +41,16 @@ Refutation refutation_of(const Certification& certification) {
 Refutation refutation_of(const Draw& missed, const Task& task) {
   return {missed.chain, std::nullopt,
           "a start " + out_text(task, missed.sigmas_out) + " missed the goal at " +
-              corner_name(missed.chain.start, task)};
+              corner_name(missed.chain.start, task) + ": " + miss_text(missed.chain, task)};
+}
+
+std::string miss_text(const Chain& missed, const Task& task) {
+  if (!missed.done) return format("step %zu: ", missed.steps.back()) + missed.failure;
+  const Pose end = missed.end();
+  return format("ended %.2f mm and %.2f degrees from the goal",
+                1e3 * (end.position_m - task.goal.position_m).norm(),
+                shown(end.orientation.angularDistance(task.goal.orientation), 3)) +
+         (inserted(task, end) ? "" : ", not inserted");
 }
 
 std::string corner_name(const Particle& start, const Task& task) {

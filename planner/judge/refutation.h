@@ -23,8 +23,12 @@ struct Refutation {
 /// The earliest disagreement. @param certification one that does not hold
 [[nodiscard]] Refutation refutation_of(const Certification& certification);
 
-/// A draw that missed the goal, with the physics that it had.
+/// A draw that missed the goal, with the physics that it had and what stopped it.
 [[nodiscard]] Refutation refutation_of(const Draw& missed, const Task& task);
+
+/// "step 4: outcome contact has no successor", "ended 2.31 mm and 0.00 degrees from the goal, not
+/// inserted": of a chain that was run and has missed it.
+[[nodiscard]] std::string miss_text(const Chain& missed, const Task& task);
 
 /// "friction 0.6, latency 7.0 ms, the part 0.5 mm larger than drawn, tilted by 0.17 degrees", for
 /// people.

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
+#include "planner/judge/refutation.h"
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/base/wilson.h"
-#include "shared/task/inserted.h"
 #include "shared/task/spread.h"
 
 namespace tenon::planner {
@@ -68,6 +69,35 @@ std::string tilt_text(double held, double stated) {
   return ", tilted by up to " + (held < stated ? format("%.2g of ", shown(held, 3)) : "") + most;
 }
 
+/// A line for all draws that were stopped in one step, and one for all that ended beside the goal.
+std::string misses_text(const PlanReport& report, const Task& task) {
+  struct Alike {
+    std::optional<std::size_t> step;
+    std::string first;
+    std::size_t more = 0;
+  };
+  std::vector<Alike> all;
+  for (const Draw& draw : report.validation.draws) {
+    if (draw.at_goal) continue;
+    std::optional<std::size_t> step;
+    if (!draw.chain.done) step = draw.chain.steps.back();
+    const auto known =
+        std::find_if(all.begin(), all.end(), [&](const Alike& one) { return one.step == step; });
+    if (known != all.end()) {
+      ++known->more;
+    } else {
+      all.push_back({step, out_text(task, draw.sigmas_out) + ", " + miss_text(draw.chain, task)});
+    }
+  }
+  std::string text;
+  for (const Alike& one : all) {
+    text += "missed: " + one.first;
+    if (one.more > 0) text += format("; %zu more ", one.more) + (one.step ? "there" : "beside it");
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 double peak_force_N(const PlanReport& report) {
@@ -84,15 +114,7 @@ std::vector<std::string> missed(const PlanReport& report, const Task& task) {
   std::vector<std::string> lines;
   for (const Draw& draw : report.validation.draws) {
     if (draw.at_goal) continue;
-    const Chain& chain = draw.chain;
-    const std::string what =
-        chain.done
-            ? format("ended %.2f mm and %.2f degrees from the goal",
-                     1e3 * (chain.end().position_m - task.goal.position_m).norm(),
-                     shown(chain.end().orientation.angularDistance(task.goal.orientation), 3)) +
-                  (inserted(task, chain.end()) ? "" : ", not inserted")
-            : format("step %zu: ", chain.steps.back()) + chain.failure;
-    lines.push_back(out_text(task, draw.sigmas_out) + ", " + what);
+    lines.push_back(out_text(task, draw.sigmas_out) + ", " + miss_text(draw.chain, task));
   }
   return lines;
 }
@@ -184,7 +206,7 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
         format("beyond the promise: %zu of %zu starts %g sigma out end there too\n",
                arrived(report.validation.rim), report.validation.rim.size(), drawn_sigmas(task));
   }
-  for (const std::string& draw : missed(report, task)) text += "missed: " + draw + "\n";
+  text += misses_text(report, task);
   text += cell_changes_text(report.adapted);
   for (const std::string& refusal : report.refusals) text += "refuted: " + refusal + "\n";
   return text + step_table(plan);

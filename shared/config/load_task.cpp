@@ -266,7 +266,9 @@ void read_search(const Value& value, Task& task) {
   map.optional_number("time_limit_s", positive_to(86'400.0), task.time_limit_s);
 }
 
-// What the calibration of an arm and its cell is commonly good to, 0.17 degrees.
+// 0.17 degrees: three of the standard deviations that the shipped experiments draw
+// (sim/experiments). What a cell's calibration is good to, whoever has measured it says in the
+// task.
 constexpr double kCalibrated_rad = 3e-3;
 
 void read_physics(const Value& value, Task& task) {

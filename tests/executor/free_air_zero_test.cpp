@@ -62,6 +62,27 @@ TEST(FreeAirZero, LearnsNothingFromAWayThatWasNotFreeOrTooShort) {
   EXPECT_TRUE(zero.moved().isZero());
 }
 
+// A peg that brushes the wall of its slot on the way in: as recorded, no more than noise may be
+// over the whole of the way, and less at its end than what holds a contact.
+TEST(FreeAirZero, LearnsNothingFromABodyThatTheToolBrushesOnTheWay) {
+  const auto pushed = [](double begins, double first_N, double last_N) {
+    FreeAirZero zero({.deviation_max = Vector6::Constant(0.6)});
+    Random random(2);
+    constexpr int kSamples = 227;
+    zero.begin(true);
+    for (int i = 0; i < kSamples; ++i) {
+      const double part = static_cast<double>(i) / kSamples;
+      const double force_N =
+          part < begins ? 0.0 : first_N + (last_N - first_N) * (part - begins) / (1.0 - begins);
+      zero.add(Vector6::Unit(0) * (force_N + 0.12 * random.normal()));
+    }
+    return zero.end().has_value();
+  };
+  EXPECT_FALSE(pushed(0.45, 1.5, 0.5));
+  EXPECT_FALSE(pushed(0.25, 0.5, 0.5)) << "a steady one, met on the way";
+  EXPECT_TRUE(pushed(0.0, 0.3, 0.35)) << "a zero that moves slowly";
+}
+
 /// To and fro along x, `moves` times, nothing near.
 Plan to_and_fro(int moves) {
   Plan plan = hand_made_plan();

@@ -250,8 +250,7 @@ TEST(Planner, WhatNoPlanBearsOfTheTiltIsToldAndHalfOfItHeldOrNone) {
 }
 
 TEST(Planner, APlanThatDiesByTheArmsLatencyIsRefuted) {
-  Task task = room_task();
-  task.guide_moves = true;
+  const Task task = room_task();
   const Plan plan = *planned(task).plan;
   WallRollout::World world = room();
   world.x_gain_late_mps = 1.0;  // 10 mm at the 10 ms that the plan allows

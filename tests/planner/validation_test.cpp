@@ -12,6 +12,7 @@
 
 #include "planner/belief/belief.h"
 #include "planner/judge/refutation.h"
+#include "planner/report/summary.h"
 #include "tests/planner/room_plan.h"
 
 namespace tenon::planner {
@@ -25,7 +26,6 @@ PlanReport planned_by(std::size_t draws, const Task& task) {
 
 TEST(Validation, TheRimStandsWhereDrawingEndsAndCountsInNoStatistic) {
   Task task = room_task();
-  task.guide_moves = true;
   const PlanReport report = planned_by(20, task);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
   const Validation& validation = report.validation;
@@ -64,7 +64,6 @@ TEST(Validation, AStartOnTheRimStaysWithinTheEnvelopesHoweverFewWereDrawn) {
 TEST(Validation, CornersStandOnTheRimOfTheReachWithEveryExtremeOfPhysics) {
   Task task = room_task();
   task.oversize_m = 1e-3;
-  task.guide_moves = true;
   const PlanReport report = planned_by(20, task);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
   const std::vector<Draw>& corners = report.validation.corners;
@@ -91,7 +90,6 @@ TEST(Validation, CornersStandOnTheRimOfTheReachWithEveryExtremeOfPhysics) {
 TEST(Validation, ALookAtTheCornersHasEachOfThemOnceAndEveryPhysicsOnEverySide) {
   Task task = room_task();
   task.coordinates = 0b111111;
-  task.guide_moves = true;
   task.starts.front().sigma << 0.03, 0.03, 0.03, 0.02, 0.02, 0.02;
   Plan plan;
   plan.latency_max_s = 0.008;
@@ -118,6 +116,30 @@ TEST(Validation, ALookAtTheCornersHasEachOfThemOnceAndEveryPhysicsOnEverySide) {
       EXPECT_EQ(physics.size(), 4U) << axis << " " << side;
     }
   }
+}
+
+TEST(Validation, StartsOfAPassageHaveEveryTiltWithEverySizeFromAllOverTheRim) {
+  Task task = room_task();
+  task.tilt_rad = 3e-3;
+  task.oversize_m = 1e-3;
+  Plan plan;
+  plan.latency_max_s = 0.008;
+  WallRollout rollout(room());
+  std::map<double, int> from_x;
+  std::map<std::array<double, 3>, std::set<double>> sizes;
+  for (const JudgedStart& one : passage_starts(plan, task, task.starts.front(), rollout)) {
+    const Particle level = without_tilt(one.particle, task);
+    ++from_x[std::round(1e6 * level.tool().position_m.x())];
+    const Vector3 turn_rad = rotation_vector(one.particle.environment.orientation);
+    sizes[{std::round(1e6 * turn_rad.x()), std::round(1e6 * turn_rad.y()),
+           std::round(1e6 * turn_rad.z())}]
+        .insert(one.particle.physics.oversize_m);
+  }
+  // Two tips along x, those along y between them, and the corners to either side.
+  EXPECT_EQ(from_x.size(), 5U);
+  for (const auto& [x_um, count] : from_x) EXPECT_GE(count, 2) << x_um;
+  EXPECT_EQ(sizes.size(), 7U);
+  for (const auto& [tilt, both] : sizes) EXPECT_EQ(both.size(), 2U) << tilt[0] << " " << tilt[1];
 }
 
 /// Rotation vectors of the environments.
@@ -230,7 +252,7 @@ TEST(Validation, OtherRulesDecideOnTheSameMovesWithoutSimulatingThem) {
     EXPECT_EQ(draw.chain.moves.size(), 1U);
     EXPECT_FALSE(draw.chain.failure.empty());
   }
-  EXPECT_EQ(arrived(decided_by(*report.plan, task, report.validation.corners)), 16U);
+  EXPECT_EQ(arrived(decided_by(*report.plan, task, report.validation.corners)), 32U);
 }
 
 TEST(Validation, TheFirstDrawWithinReachThatMissedSpeaksWithThePhysicsThatItHad) {
@@ -244,15 +266,19 @@ TEST(Validation, TheFirstDrawWithinReachThatMissedSpeaksWithThePhysicsThatItHad)
   EXPECT_EQ(missed_draw({draws.data(), 2}, 2.0), nullptr) << "beyond the promise";
   draws[2].sigmas_out = 1.5;
   draws[2].chain.start.physics = {0.6, 5e4, 1e-3, 0.007};
+  draws[2].chain.steps = {0, 1};
+  draws[2].chain.failure = "outcome contact has no successor";
+  const std::string stopped = ": step 1: outcome contact has no successor";
   EXPECT_EQ(missed_draw(draws, 2.0), &draws[2]);
   EXPECT_EQ(refutation_of(draws[2], task).why,
             "a start 1.50 sigma out missed the goal at friction 0.6, latency 7.0 ms, the part 1 mm "
-            "larger than drawn");
+            "larger than drawn" +
+                stopped);
 
   task.tilt_rad = 3e-3;
   Pose& environment = draws[2].chain.start.environment;
   const auto ends_in = [&](const std::string& end) {
-    return refutation_of(draws[2], task).why.ends_with(end);
+    return refutation_of(draws[2], task).why.ends_with(end + stopped);
   };
   EXPECT_TRUE(ends_in("larger than drawn"));
   environment.orientation = rotation_of({0.0, 0.0, -3e-3});
@@ -268,7 +294,31 @@ TEST(Validation, AStartOnTheRimThatCollidesIsLeftOut) {
   task.starts.front().sigma[0] = (0.5 - 0.23 - 2e-3) / 3.0;
   const PlanReport report = planned_by(20, task);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
-  EXPECT_EQ(report.validation.rim.size(), 14U);
+  EXPECT_EQ(report.validation.rim.size(), 28U);
+}
+
+TEST(Validation, DrawsThatWereStoppedInOneStepAreOneLine) {
+  const Task task = room_task();
+  PlanReport report = planned_by(20, task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+  EXPECT_EQ(summary(report, task, "plan.tnp").find("missed:"), std::string::npos);
+  for (const std::size_t i : {1U, 4U, 5U, 9U}) {
+    Draw& draw = report.validation.draws[i];
+    draw.at_goal = false;
+    draw.sigmas_out = 0.1 * static_cast<double>(i);
+    // The last two went on to an end beside the goal.
+    if (i >= 5U) draw.chain.moves.back().pose.position_m.x() += 0.01;
+    if (i >= 5U) continue;
+    draw.chain.done = false;
+    draw.chain.failure = "outcome contact has no successor";
+  }
+  const std::string text = summary(report, task, "plan.tnp");
+  EXPECT_NE(text.find("missed: 0.10 sigma out, step "), std::string::npos) << text;
+  EXPECT_NE(text.find(": outcome contact has no successor; 1 more there\n"), std::string::npos);
+  EXPECT_NE(text.find("missed: 0.50 sigma out, ended "), std::string::npos) << text;
+  EXPECT_NE(text.find(" degrees from the goal; 1 more beside it\n"), std::string::npos) << text;
+  // The statistics have each.
+  EXPECT_EQ(missed(report, task).size(), 4U);
 }
 
 }  // namespace

@@ -26,8 +26,7 @@ RolloutResult WallRollout::simulate(const Particle& particle, const MoveParamete
       signature.bits &= static_cast<std::uint16_t>(~ContactSignature::bit(axis, environment));
     }
   }
-  const auto [low_m, high_m] =
-      walls(particle.pose.position_m.y(), particle.environment.orientation);
+  const auto [low_m, high_m] = walls(particle.pose.position_m, particle.environment.orientation);
   // The nearest wall along the way stops everything.
   double part = 1.0;
   int stopping_axis = -1;
@@ -56,19 +55,27 @@ RolloutResult WallRollout::simulate(const Particle& particle, const MoveParamete
   return result;
 }
 
-WallRollout::Walls WallRollout::walls(double y_m, const Eigen::Quaterniond& turn) const {
+WallRollout::Walls WallRollout::walls(const Vector3& from_m, const Eigen::Quaterniond& turn) const {
   Walls walls{world_.low_m, world_.high_m};
+  const double y_m = from_m.y();
   if (y_m > world_.ledge_from_y_m && y_m < world_.ledge_to_y_m) walls.low_m.x() += world_.ledge_m;
   if (rotation_vector(turn).norm() > world_.narrow_beyond_tilt_rad) {
     walls.low_m.x() += world_.narrower_m;
     walls.high_m.x() -= world_.narrower_m;
+  }
+  const bool before_mouth = y_m <= world_.mouth_y_m;
+  const bool beside = from_m.x() < world_.slot_from_x_m || from_m.x() > world_.slot_to_x_m;
+  if (before_mouth && beside) walls.high_m.y() = std::min(walls.high_m.y(), world_.mouth_y_m);
+  if (!before_mouth) {
+    walls.low_m.x() = world_.slot_from_x_m;
+    walls.high_m.x() = world_.slot_to_x_m;
   }
   return walls;
 }
 
 bool WallRollout::in_collision(const Pose& tool_pose) {
   const Vector3& p = tool_pose.position_m;
-  const auto [low_m, high_m] = walls(p.y(), tool_pose.orientation);
+  const auto [low_m, high_m] = walls(p, tool_pose.orientation);
   return (p.array() < low_m.array()).any() || (p.array() > high_m.array()).any();
 }
 

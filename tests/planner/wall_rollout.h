@@ -34,6 +34,10 @@ class WallRollout final : public Rollout {
     /// Where the environment is turned by more, the walls along x stand this much farther in.
     double narrow_beyond_tilt_rad = std::numeric_limits<double>::infinity();
     double narrower_m = 0.02;
+    /// At this y a wall stands across, and in it a slot between these x leads on.
+    double mouth_y_m = std::numeric_limits<double>::infinity();
+    double slot_from_x_m = 0.0;
+    double slot_to_x_m = 0.0;
   };
 
   explicit WallRollout(const World& world) : world_(world) {}
@@ -51,8 +55,8 @@ class WallRollout final : public Rollout {
     Vector3 low_m;
     Vector3 high_m;
   };
-  /// As a tool finds them. @param turn of the environment to the tool
-  [[nodiscard]] Walls walls(double y_m, const Eigen::Quaterniond& turn) const;
+  /// As a tool finds them from where it is. @param turn of the environment to the tool
+  [[nodiscard]] Walls walls(const Vector3& from_m, const Eigen::Quaterniond& turn) const;
 
   World world_;
 };

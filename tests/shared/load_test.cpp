@@ -103,7 +103,7 @@ TEST(LoadTask, ReadsEveryValue) {
   EXPECT_EQ(task.move_weight, 0.0);
   EXPECT_EQ(task.friction.high, 0.6);
   EXPECT_EQ(task.oversize_m, 2.5e-4);
-  EXPECT_EQ(task.tilt_rad, 3e-3) << "as calibration is commonly good to";
+  EXPECT_EQ(task.tilt_rad, 3e-3);
   EXPECT_EQ(task.rollout_step_us, 2000);
 
   const std::string level = replaced(kTinyTask, "  oversize_m: 2.5e-4\n", "  tilt_rad: 0\n");
