@@ -56,21 +56,30 @@ void LockedContacts::make_rows(const std::vector<dContactGeom>& points, const Co
 
 LockedContacts::Pull LockedContacts::pull_at(const Vector3& velocity_mps, const Tool& tool,
                                              std::size_t stride) {
-  Pull pull;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double off_mps = velocity_mps[axis] - tool.velocity_mps[axis];
-    pull.slope_Nspm(axis, axis) = tool.damping_Nspm[axis];
-    pull.force_N[axis] = off_mps * tool.damping_Nspm[axis];
-  }
+  Vector3 force_N = (velocity_mps - tool.velocity_mps).cwiseProduct(tool.damping_Nspm);
+  // Of the slope, which is symmetric: the diagonal, and xy, yz, zx.
+  Vector3 along_Nspm = tool.damping_Nspm;
+  Vector3 across_Nspm = Vector3::Zero();
+  bool same = true;
   for (std::size_t i = 0; i < rows_.size(); i += stride) {
     Row& row = rows_[i];
     const double missing_mps = row.wanted_mps - row.way.dot(velocity_mps);
     const double whole_N = missing_mps * row.damping_Nspm;
     row.force_N = std::clamp(whole_N, row.least_N, row.most_N);
-    row.bound = whole_N > row.most_N ? 1 : (whole_N < row.least_N ? -1 : 0);
-    pull.force_N -= row.force_N * row.way;
-    if (row.bound == 0) pull.slope_Nspm += row.damping_Nspm * row.way * row.way.transpose();
+    const int bound = whole_N > row.most_N ? 1 : (whole_N < row.least_N ? -1 : 0);
+    same = same && bound == row.bound;
+    row.bound = bound;
+    force_N -= row.force_N * row.way;
+    if (bound != 0) continue;
+    const Vector3 damped_Nspm = row.damping_Nspm * row.way;
+    along_Nspm += damped_Nspm.cwiseProduct(row.way);
+    across_Nspm += damped_Nspm.cwiseProduct(Vector3{row.way[1], row.way[2], row.way[0]});
   }
+  Pull pull{force_N,
+            Eigen::Matrix3d{{along_Nspm[0], across_Nspm[0], across_Nspm[2]},
+                            {across_Nspm[0], along_Nspm[1], across_Nspm[1]},
+                            {across_Nspm[2], across_Nspm[1], along_Nspm[2]}},
+            same};
   for (int axis = 0; axis < 3; ++axis) {
     if (tool.damping_Nspm[axis] != 0.0) continue;
     pull.force_N[axis] = 0.0;
@@ -116,14 +125,10 @@ double LockedContacts::lowest_along(const Vector3& velocity_mps, const Vector3& 
 bool LockedContacts::settle(const Tool& tool, std::size_t stride, Vector3& velocity_mps) {
   Pull pull = pull_at(velocity_mps, tool, stride);
   for (int i = 0; i < kIterationsMax; ++i) {
-    was_bound_.clear();
-    for (const Row& row : rows_) was_bound_.push_back(row.bound);
     const Pull before = pull;
     const Vector3 way_mps = -solved(before.slope_Nspm, before.force_N);
     pull = pull_at(velocity_mps + way_mps, tool, stride);
-    const bool same = std::equal(rows_.begin(), rows_.end(), was_bound_.begin(),
-                                 [](const Row& row, int bound) { return row.bound == bound; });
-    if (same) {
+    if (pull.same_bounds) {
       velocity_mps += way_mps;
       return true;
     }

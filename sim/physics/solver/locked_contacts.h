@@ -57,8 +57,9 @@ class LockedContacts {
   /// At some velocity: what is missing to balance, the gradient of the convex function, and how it
   /// changes with the velocity.
   struct Pull {
-    Vector3 force_N = Vector3::Zero();
-    Eigen::Matrix3d slope_Nspm = Eigen::Matrix3d::Zero();
+    Vector3 force_N;
+    Eigen::Matrix3d slope_Nspm;
+    bool same_bounds;  ///< every force is where it was before, between its bounds or at one of them
   };
 
   void make_rows(const std::vector<dContactGeom>& points, const ContactLaw& law, double step_s);
@@ -71,7 +72,6 @@ class LockedContacts {
   [[nodiscard]] bool settle(const Tool& tool, std::size_t stride, Vector3& velocity_mps);
 
   std::vector<Row> rows_;
-  std::vector<int> was_bound_;
   std::vector<std::pair<double, double>> bends_;
   std::vector<Vector3> positions_m_;
 };
