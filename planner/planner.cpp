@@ -8,6 +8,7 @@
 
 #include "planner/belief/belief_summary.h"
 #include "planner/belief/corners.h"
+#include "planner/belief/remembered_rollout.h"
 #include "planner/belief/rollout_pool.h"
 #include "planner/collision.h"
 #include "planner/goal_certainty.h"
@@ -46,12 +47,12 @@ class Planning {
         assumptions_(stored_assumptions(task, options.assumptions)),
         now_s_(now_s ? now_s : [] { return 0.0; }),
         progress_(options.progress, now_s_),
-        pool_(rollout, options.threads),
+        pool_(RememberedRollout(rollout), options.threads),
         search_pool_(options.search_physics ? *options.search_physics : rollout, options.threads),
-        succ_(search_pool_, search_move(task, start, assumptions_), task.rollout_step_us),
+        succ_(search_pool_, search_move(task, start, assumptions_), search_step_us(task)),
         true_succ_(pool_, search_move(task, start, assumptions_), task.rollout_step_us),
         long_succ_(search_pool_, long_move(task, search_move(task, start, assumptions_)),
-                   task.rollout_step_us),
+                   search_step_us(task)),
         judge_(task, start, {options.method, assumptions_, options.draws, options.reach}, pool_,
                now_s_) {
     report_.method = options.method;
@@ -238,9 +239,10 @@ class Planning {
         return true;
       }
       const auto& refutation = std::get<Refutation>(judgement);
-      tilt_.refute(refutation.by_tilt, moves_simulated());
+      tilt_.refute(refutation.by_tilt, way->size(), moves_simulated());
       const std::size_t fresh = searched_->add_starts(refutation);
-      const bool truer = fresh == 0 && succ != &true_succ_ && options_.search_physics != nullptr;
+      const bool lesser = options_.search_physics || search_step_us(task_) > task_.rollout_step_us;
+      const bool truer = fresh == 0 && succ != &true_succ_ && lesser;
       report_.refusals.push_back(refutation.why + way_refuted(fresh, truer));
       progress_.tell("refuted: " + report_.refusals.back());
       if (truer) succ = &true_succ_;
@@ -265,7 +267,7 @@ class Planning {
   }
 
   void learn(const Refutation& refutation) {
-    tilt_.refute(refutation.by_tilt, moves_simulated());
+    tilt_.refute(refutation.by_tilt, report_.search.path.size(), moves_simulated());
     const auto refused_step = searched_->learn(refutation, report_.search.path);
     report_.refusals.push_back(lesson(refutation, refused_step));
     report_.rounds.back().outcome = "refuted: " + report_.refusals.back();

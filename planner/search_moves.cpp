@@ -31,6 +31,11 @@ MoveParameters search_move(const Task& task, const Start& start,
   return move_parameters(one_step(task, start, assumptions), 0);
 }
 
+std::int64_t search_step_us(const Task& task) {
+  const bool turns = task.compliance.compliant_axes >> 3 != 0;
+  return (turns ? 1 : 2) * task.rollout_step_us;
+}
+
 std::optional<MoveReach> reach_of_moves(const Task& task, const Start& start,
                                         const CellAssumptions& assumptions, const ArmReach& reach,
                                         std::string& why) {

@@ -2,6 +2,7 @@
 // The parameters of the moves that the search simulates: those of a plan's step, as the file has
 // them, so that what is searched is what is written. Pure; any thread.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,11 @@ namespace tenon::planner {
 /// it.
 [[nodiscard]] MoveParameters search_move(const Task& task, const Start& start,
                                          const CellAssumptions& assumptions);
+
+/// Where nothing turns, the search looks at moves with twice the step of what is judged, in half
+/// the time; what is wrong with a path for that is refuted like anything else. A part that aligns
+/// with what it meets does otherwise with longer steps.
+[[nodiscard]] std::int64_t search_step_us(const Task& task);
 
 /// What of the search's moves the arm can make.
 /// @param why set to one line where there is nothing to ask: the arm cannot hold the start, or the

@@ -2,6 +2,8 @@
 // For how long plans are looked for that bear one tilt, in simulated moves, before a smaller one is
 // all that is held. One thread.
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -21,17 +23,17 @@ class TiltEffort {
   }
 
   /// A path was refuted. @param by_tilt see Refutation
-  void refute(bool by_tilt, std::uint64_t moves) {
+  void refute(bool by_tilt, std::size_t steps, std::uint64_t moves) {
     if (!by_tilt) return;
-    if (allowed_ == 0) allowed_ = moves - began_at_;
+    if (allowed_ == 0) allowed_ = std::max<std::uint64_t>(moves - began_at_, kRunsOfAPath * steps);
     refuted_at_ = moves;
     ++paths_;
   }
 
   [[nodiscard]] bool refuted() const { return refuted_at_.has_value(); }
   /// Once the tilt has refuted a path, another is looked for with as many moves again as it took to
-  /// find the first path that any tilt refuted, and so on from each that is found and refuted, up
-  /// to kPathsMax of them.
+  /// find and refute the first path that any tilt refuted, or as kRunsOfAPath runs of that path
+  /// take, and so on from each that is found and refuted, up to kPathsMax of them.
   [[nodiscard]] bool spent(std::uint64_t moves) const {
     return refuted() && (paths_ >= kPathsMax || moves >= *refuted_at_ + allowed_);
   }
@@ -44,6 +46,8 @@ class TiltEffort {
 
  private:
   static constexpr int kPathsMax = 8;
+  /// A plan that holds is judged by six times as many.
+  static constexpr std::uint64_t kRunsOfAPath = 100;
 
   std::uint64_t began_at_ = 0;
   std::optional<std::uint64_t> refuted_at_;  ///< the last time

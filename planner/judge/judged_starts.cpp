@@ -35,38 +35,55 @@ std::vector<PhysicalParameters> largest(std::vector<PhysicalParameters> all, con
   return all;
 }
 
-/// None, and as far as it may be about each axis, either way: an odd number, so that taking turns
-/// ties none of them to a corner.
-std::vector<Vector6> extreme_tilts(const Task& task) {
-  std::vector<Vector6> tilts = {Vector6::Zero()};
+/// None, and as far as it may be about each axis, either way, of the environment, of the part in
+/// the hand, and of both, together and apart: an odd number, so that taking turns ties none of them
+/// to a corner.
+std::vector<Tilt> extreme_tilts(const Task& task) {
+  std::vector<Tilt> tilts = {{}};
   for (const int axis : tilted_axes(task)) {
-    tilts.emplace_back(task.tilt_rad * Vector6::Unit(axis));
-    tilts.emplace_back(-task.tilt_rad * Vector6::Unit(axis));
+    for (const double turn_rad : {task.tilt_rad, -task.tilt_rad}) {
+      const Vector3 turn = turn_rad * Vector3::Unit(axis - 3);
+      const Vector3 each = std::sqrt(0.5) * turn;
+      tilts.push_back({turn, Vector3::Zero()});
+      tilts.push_back({Vector3::Zero(), turn});
+      tilts.push_back({each, each});
+      tilts.push_back({each, -each});
+    }
   }
   return tilts;
 }
 
-/// Evenly from the ball of all tilts.
-Vector6 draw_tilt(Random& random, const Task& task) {
+/// Evenly from the ball of all tilts, of both together.
+Tilt draw_tilt(Random& random, const Task& task) {
   const std::vector<int> axes = tilted_axes(task);
-  Vector6 tilt = Vector6::Zero();
+  Tilt tilt;
+  const auto drawn = [&] { return random.uniform(-task.tilt_rad, task.tilt_rad); };
   do {
-    for (const int axis : axes) tilt[axis] = random.uniform(-task.tilt_rad, task.tilt_rad);
-  } while (tilt.norm() > task.tilt_rad);
+    for (const int axis : axes) {
+      tilt.environment_rad[axis - 3] = drawn();
+      tilt.held_rad[axis - 3] = drawn();
+    }
+  } while (tilt.norm_rad() > task.tilt_rad);
   return tilt;
 }
 
-/// The particle in an environment that is turned, besides, about the goal.
-Particle tilted(const Particle& particle, const Vector6& tilt, const Task& task) {
+/// The particle in an environment that is turned, besides, about the goal, with its part turned
+/// about the tool.
+Particle tilted(const Particle& particle, const Tilt& tilt, const Task& task) {
   Particle other = particle;
-  if (tilt.isZero()) return other;
-  const Vector3 goal_m = compose(particle.environment, task.goal).position_m;
-  other.environment = compose(environment_pose(tilt, goal_m), particle.environment);
+  if (!tilt.environment_rad.isZero()) {
+    const Vector3 goal_m = compose(particle.environment, task.goal).position_m;
+    Vector6 turn = Vector6::Zero();
+    turn.tail<3>() = tilt.environment_rad;
+    other.environment = compose(environment_pose(turn, goal_m), particle.environment);
+  }
+  if (!tilt.held_rad.isZero()) {
+    other.pose.orientation = (rotation_of(tilt.held_rad) * particle.pose.orientation).normalized();
+  }
   return other;
 }
 
-/// @param tilt of its environment
-JudgedStart draw_place(Random& random, const Vector6& tilt, const Task& task, const Start& start,
+JudgedStart draw_place(Random& random, const Tilt& tilt, const Task& task, const Start& start,
                        Rollout& rollout) {
   const bool uniform = task.errors == Distribution::kUniform;
   JudgedStart drawn;
@@ -113,7 +130,7 @@ std::vector<Vector6> rim_directions(const Task& task, const Start& start) {
 /// Those of a rim that do not collide, each with all of the parameters.
 std::vector<JudgedStart> starts_at(double sigmas, const std::vector<PhysicalParameters>& physics,
                                    const Task& task, const Start& start, Rollout& rollout) {
-  const std::vector<Vector6> tilts = extreme_tilts(task);
+  const std::vector<Tilt> tilts = extreme_tilts(task);
   std::vector<JudgedStart> starts;
   for (const Vector6& direction : rim_directions(task, start)) {
     const Particle level =
@@ -138,12 +155,10 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
   Random random(seed);
   Random late(stream_seed(seed, "latency"));
   Random turned(stream_seed(seed, "tilt"));
-  const std::vector<Vector6> tilts = extreme_tilts(task);
   std::vector<JudgedStart> starts;
   for (std::size_t i = 0; i < count; ++i) {
     const bool at_corner = physics == DrawnPhysics::kCorners && i % 2 == 1;
-    const Vector6 even = draw_tilt(turned, task);
-    const Vector6& tilt = at_corner ? tilts[i / 2 % tilts.size()] : even;
+    const Tilt tilt = draw_tilt(turned, task);
     JudgedStart drawn = draw_place(random, tilt, task, start, rollout);
     PhysicalParameters& p = drawn.particle.physics;
     p.contact_stiffness_Npm = plan.contact_stiffness_Npm;
@@ -169,18 +184,23 @@ std::vector<double> tilts_to_hold(const Task& task) {
   return {task.tilt_rad, 0.5 * task.tilt_rad, 0.0};
 }
 
-bool is_tilted(const Particle& start, const Task& task) {
-  const Vector3 turn_rad = rotation_vector(start.environment.orientation);
-  const std::vector<int> axes = tilted_axes(task);
-  return std::any_of(axes.begin(), axes.end(), [&](int axis) { return turn_rad[axis - 3] != 0.0; });
+Tilt tilt_of(const Particle& particle, const Task& task, const Start& start) {
+  Tilt tilt{rotation_vector(particle.environment.orientation),
+            displacement_between(start.pose, particle.pose).tail<3>()};
+  for (int axis = 3; axis < 6; ++axis) {
+    if (!has(task.coordinates, axis)) continue;
+    tilt.environment_rad[axis - 3] = tilt.held_rad[axis - 3] = 0.0;
+  }
+  return tilt;
 }
 
-Particle without_tilt(const Particle& start, const Task& task) {
+Particle without_tilt(const Particle& particle, const Task& task, const Start& start) {
   Vector6 turn = Vector6::Zero();
-  turn.tail<3>() = rotation_vector(start.environment.orientation);
-  for (const int axis : tilted_axes(task)) turn[axis] = 0.0;
-  Particle level = start;
+  turn.tail<3>() = rotation_vector(particle.environment.orientation) -
+                   tilt_of(particle, task, start).environment_rad;
+  Particle level = particle;
   level.environment = environment_pose(turn, task.error_about_m);
+  level.pose.orientation = start.pose.orientation;
   return level;
 }
 
@@ -207,7 +227,7 @@ std::vector<JudgedStart> screening_starts(const Plan& plan, const Task& task, co
 std::vector<JudgedStart> passage_starts(const Plan& plan, const Task& task, const Start& start,
                                         Rollout& rollout) {
   const std::vector<PhysicalParameters> physics = corners(plan, task);
-  const std::vector<Vector6> tilts = extreme_tilts(task);
+  const std::vector<Tilt> tilts = extreme_tilts(task);
   Task level = task;
   level.tilt_rad = 0.0;
   const std::vector<JudgedStart> rim =

@@ -1,6 +1,7 @@
 #pragma once
 // The starts that a plan is judged from: drawn, and set where draws are rare. Offline; one thread.
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct JudgedStart {
   double sigmas_out = 0.0;  ///< see shared/task/spread.h
 };
 
-/// What of friction, size, latency and tilt the draws have.
+/// What of friction, size and latency the draws have. All are tilted by as much as may be or less,
+/// about any axes.
 enum class DrawnPhysics : std::uint8_t {
   kEven,     ///< drawn evenly from their ranges
   kCorners,  ///< every second draw at one of the corners of these ranges, in turn
@@ -34,16 +36,27 @@ enum class DrawnPhysics : std::uint8_t {
 /// What a plan is tried with in turn until one is found: all of the task's tilt, half of it, none.
 [[nodiscard]] std::vector<double> tilts_to_hold(const Task& task);
 
-/// Whether the environment is turned about an axis that is no coordinate.
-[[nodiscard]] bool is_tilted(const Particle& start, const Task& task);
+/// What calibration has turned: rotation vectors in task axes, about axes that are no coordinates.
+struct Tilt {
+  Vector3 environment_rad = Vector3::Zero();
+  Vector3 held_rad = Vector3::Zero();  ///< of the part in the hand, about the tool
 
-/// The start in an environment that is turned about coordinates alone.
-[[nodiscard]] Particle without_tilt(const Particle& start, const Task& task);
+  [[nodiscard]] double norm_rad() const {
+    return std::hypot(environment_rad.norm(), held_rad.norm());
+  }
+};
+
+/// @param start that the particle is one of
+[[nodiscard]] Tilt tilt_of(const Particle& particle, const Task& task, const Start& start);
+
+/// The particle with its environment turned about coordinates alone, and its part as it is held.
+[[nodiscard]] Particle without_tilt(const Particle& particle, const Task& task, const Start& start);
 
 /// On the rim of the particles' reach, c_p standard deviations out or at the bounds, along every
 /// uncertain coordinate both ways and to every corner between them; each at all corners of
 /// friction, size and latency, and tilted in turn about each axis that is no coordinate, either
-/// way, and not at all; a tilt by which one would collide it does without.
+/// way (the environment, the part in the hand, both the same way or against each other), and not at
+/// all; a tilt by which one would collide it does without.
 [[nodiscard]] std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task,
                                                      const Start& start, Rollout& rollout);
 

@@ -50,16 +50,14 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses
   if (slow.method == PlanMethod::kMha) {
     const std::vector<Draw> looked =
         run(slow, screening_starts(slow, held_, start_, pool_.front()), effort_.corners);
-    const bool all = misses == Misses::kAll;
-    if (all) {
-      if (const auto miss = missed(slow, looked)) return *miss;
+    if (const auto miss = missed(slow, looked)) {
+      // The first in the order of the corners.
+      return misses == Misses::kAll ? *miss : missed(slow, corners_of(slow)).value_or(*miss);
     }
-    if (missed_draw(looked, task_.particle_sigmas) == nullptr) {
-      Judgement judgement = at_once(slow, good_chains(looked));
-      if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
-      if (all) {
-        if (auto again = misses_again(slow)) return *std::move(again);
-      }
+    Judgement judgement = at_once(slow, good_chains(looked));
+    if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
+    if (misses == Misses::kAll) {
+      if (auto again = misses_again(slow)) return *std::move(again);
     }
   }
   Certification at_contact_speed = certified(slow);
@@ -258,13 +256,14 @@ std::optional<Refutation> PathJudge::missed(const Plan& plan, std::span<const Dr
 }
 
 Refutation PathJudge::told(const Plan& plan, const Draw& miss) {
-  Refutation refutation = refutation_of(miss, task_);
+  Refutation refutation = refutation_of(miss, task_, start_);
   if (misses_ == Misses::kAll) {
     for (const JudgedStart& start : missed_) refutation.others.push_back(start.particle);
   }
   std::vector<JudgedStart> levelled;
   const auto level = [&](const Particle& start) {
-    if (is_tilted(start, task_)) levelled.push_back({without_tilt(start, task_), 0.0});
+    if (tilt_of(start, task_, start_).norm_rad() == 0.0) return;
+    levelled.push_back({without_tilt(start, task_, start_), 0.0});
   };
   level(miss.chain.start);
   for (const Particle& start : refutation.others) level(start);

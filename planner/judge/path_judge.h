@@ -110,7 +110,7 @@ class PathJudge {
   [[nodiscard]] Certification certified(const Plan& plan);
   [[nodiscard]] std::vector<Draw> rim_of(const Plan& plan);
   /// These and the draws may refute, and end with the first miss unless all are asked for; of the
-  /// draws every second one is at a corner of friction, size, latency and tilt.
+  /// draws every second one is at a corner of friction, size and latency.
   [[nodiscard]] std::vector<Draw> corners_of(const Plan& plan);
   [[nodiscard]] std::vector<Draw> drawn(const Plan& plan, std::uint64_t seed);
   /// @param effort to which this adds

@@ -11,19 +11,29 @@
 namespace tenon::planner {
 namespace {
 
-/// ", tilted by -0.17 degrees about z"; about no one axis: ", tilted by 0.12 degrees".
-std::string tilt_name(const Particle& start, const Task& task) {
-  Vector3 tilt_rad = Vector3::Zero();
-  for (const int axis : tilted_axes(task)) {
-    tilt_rad[axis - 3] = rotation_vector(start.environment.orientation)[axis - 3];
-  }
-  if (tilt_rad.isZero()) return {};
+/// " by -0.17 degrees about z"; about no one axis: " by 0.12 degrees".
+std::string turn_text(const Vector3& turn_rad) {
   int most = 0;
-  tilt_rad.cwiseAbs().maxCoeff(&most);
-  const bool about_one = std::abs(tilt_rad[most]) == tilt_rad.norm();
-  const double told_rad = about_one ? tilt_rad[most] : tilt_rad.norm();
-  return format(", tilted by %.2f degrees", shown(told_rad, 3)) +
+  turn_rad.cwiseAbs().maxCoeff(&most);
+  const bool about_one = std::abs(turn_rad[most]) == turn_rad.norm();
+  const double told_rad = about_one ? turn_rad[most] : turn_rad.norm();
+  return format(" by %.2f degrees", shown(told_rad, 3)) +
          (about_one ? format(" about %c", "xyz"[most]) : "");
+}
+
+/// ", tilted by -0.17 degrees about z", ", the part tilted in the hand by 0.12 degrees", or both.
+std::string tilt_name(const Particle& particle, const Task& task, const Start& start) {
+  // What rounding makes of a turn about one axis is none about another.
+  constexpr double kNoTurn_rad = 1e-9;
+  const Tilt tilt = tilt_of(particle, task, start);
+  std::string name;
+  const auto tell = [&](const std::string& what, const Vector3& turn_rad) {
+    if (turn_rad.norm() < kNoTurn_rad) return;
+    name += what + turn_text((turn_rad.array().abs() < kNoTurn_rad).select(0.0, turn_rad));
+  };
+  tell(", tilted", tilt.environment_rad);
+  tell(", the part tilted in the hand", tilt.held_rad);
+  return name;
 }
 
 }  // namespace
@@ -38,10 +48,10 @@ Refutation refutation_of(const Certification& certification) {
   return refutation;
 }
 
-Refutation refutation_of(const Draw& missed, const Task& task) {
+Refutation refutation_of(const Draw& missed, const Task& task, const Start& start) {
   return {missed.chain, std::nullopt,
           "a start " + out_text(task, missed.sigmas_out) + " missed the goal at " +
-              corner_name(missed.chain.start, task) + ": " + miss_text(missed.chain, task)};
+              corner_name(missed.chain.start, task, start) + ": " + miss_text(missed.chain, task)};
 }
 
 std::string miss_text(const Chain& missed, const Task& task) {
@@ -53,8 +63,8 @@ std::string miss_text(const Chain& missed, const Task& task) {
          (inserted(task, end) ? "" : ", not inserted");
 }
 
-std::string corner_name(const Particle& start, const Task& task) {
-  const PhysicalParameters& corner = start.physics;
+std::string corner_name(const Particle& particle, const Task& task, const Start& start) {
+  const PhysicalParameters& corner = particle.physics;
   std::string name =
       format("friction %.3g, latency %.1f ms", corner.friction, 1e3 * corner.latency_s);
   if (task.oversize_m > 0.0) {
@@ -62,7 +72,7 @@ std::string corner_name(const Particle& start, const Task& task) {
                 ? ", the part as drawn"
                 : format(", the part %.3g mm larger than drawn", 1e3 * corner.oversize_m);
   }
-  return name + tilt_name(start, task);
+  return name + tilt_name(particle, task, start);
 }
 
 }  // namespace tenon::planner

@@ -24,7 +24,7 @@ struct Refutation {
 [[nodiscard]] Refutation refutation_of(const Certification& certification);
 
 /// A draw that missed the goal, with the physics that it had and what stopped it.
-[[nodiscard]] Refutation refutation_of(const Draw& missed, const Task& task);
+[[nodiscard]] Refutation refutation_of(const Draw& missed, const Task& task, const Start& start);
 
 /// "step 4: outcome contact has no successor", "ended 2.31 mm and 0.00 degrees from the goal, not
 /// inserted": of a chain that was run and has missed it.
@@ -32,6 +32,7 @@ struct Refutation {
 
 /// "friction 0.6, latency 7.0 ms, the part 0.5 mm larger than drawn, tilted by 0.17 degrees", for
 /// people.
-[[nodiscard]] std::string corner_name(const Particle& start, const Task& task);
+[[nodiscard]] std::string corner_name(const Particle& particle, const Task& task,
+                                      const Start& start);
 
 }  // namespace tenon::planner

@@ -99,8 +99,8 @@ struct Task {
   Range friction{0.1, 0.3, 0.6};
   double contact_stiffness_Npm = 5e4;
   double oversize_m = 0.0;  ///< the held part may be larger than drawn by up to this, in every size
-  /// Calibration may have turned the environment by up to this about any axis that is no
-  /// coordinate.
+  /// Calibration may have turned the environment, and the part in the hand, by up to this about any
+  /// axis that is no coordinate.
   double tilt_rad = 0.0;
   std::int64_t rollout_step_us = 2000;
 };

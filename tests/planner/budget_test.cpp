@@ -8,10 +8,41 @@
 #include <utility>
 #include <vector>
 
+#include "planner/search_moves.h"
+#include "planner/tilt_effort.h"
 #include "tests/planner/room_plan.h"
 
 namespace tenon::planner {
 namespace {
+
+TEST(TiltEffort, AnotherPathIsLookedForAsLongAsTheFirstTookOrAHundredRunsOfItWould) {
+  constexpr std::size_t kSteps = 20;
+  for (const std::uint64_t first : {100U, 5000U}) {
+    const std::uint64_t allowed = first == 100U ? 100 * kSteps : first;
+    TiltEffort effort;
+    effort.begin(0, {});
+    effort.refute(false, kSteps, first);
+    EXPECT_FALSE(effort.refuted()) << "not by a tilt";
+    effort.refute(true, kSteps, first);
+    EXPECT_TRUE(effort.refuted());
+    EXPECT_FALSE(effort.spent(first + allowed - 1));
+    EXPECT_TRUE(effort.spent(first + allowed));
+    // From each that is found and refuted once more, up to eight of them.
+    std::uint64_t moves = first;
+    for (int path = 2; path <= 8; ++path) {
+      EXPECT_FALSE(effort.spent(moves));
+      effort.refute(true, 2 * kSteps, moves += allowed - 1);
+    }
+    EXPECT_TRUE(effort.spent(moves));
+  }
+}
+
+TEST(SearchMoves, WhatCannotTurnIsSearchedAtTwiceTheStep) {
+  Task task = room_task();
+  EXPECT_EQ(search_step_us(task), 2 * task.rollout_step_us);
+  task.compliance.compliant_axes = 0b100011;
+  EXPECT_EQ(search_step_us(task), task.rollout_step_us);
+}
 
 /// The room, in which every rollout takes its time by a clock that nothing else moves.
 class SlowRollout final : public Rollout {

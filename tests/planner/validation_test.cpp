@@ -118,6 +118,17 @@ TEST(Validation, ALookAtTheCornersHasEachOfThemOnceAndEveryPhysicsOnEverySide) {
   }
 }
 
+/// Of the environment and of the part in the hand, in microradians.
+using Urad = std::array<double, 6>;
+
+Urad urad_of(const Tilt& tilt) {
+  const Vector3 a = 1e6 * tilt.environment_rad;
+  const Vector3 b = 1e6 * tilt.held_rad;
+  Urad urad{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
+  for (double& one : urad) one = std::round(one) + 0.0;  // no -0
+  return urad;
+}
+
 TEST(Validation, StartsOfAPassageHaveEveryTiltWithEverySizeFromAllOverTheRim) {
   Task task = room_task();
   task.tilt_rad = 3e-3;
@@ -126,29 +137,18 @@ TEST(Validation, StartsOfAPassageHaveEveryTiltWithEverySizeFromAllOverTheRim) {
   plan.latency_max_s = 0.008;
   WallRollout rollout(room());
   std::map<double, int> from_x;
-  std::map<std::array<double, 3>, std::set<double>> sizes;
+  std::map<Urad, std::set<double>> sizes;
   for (const JudgedStart& one : passage_starts(plan, task, task.starts.front(), rollout)) {
-    const Particle level = without_tilt(one.particle, task);
+    const Particle level = without_tilt(one.particle, task, task.starts.front());
     ++from_x[std::round(1e6 * level.tool().position_m.x())];
-    const Vector3 turn_rad = rotation_vector(one.particle.environment.orientation);
-    sizes[{std::round(1e6 * turn_rad.x()), std::round(1e6 * turn_rad.y()),
-           std::round(1e6 * turn_rad.z())}]
-        .insert(one.particle.physics.oversize_m);
+    const Tilt tilt = tilt_of(one.particle, task, task.starts.front());
+    sizes[urad_of(tilt)].insert(one.particle.physics.oversize_m);
   }
   // Two tips along x, those along y between them, and the corners to either side.
   EXPECT_EQ(from_x.size(), 5U);
   for (const auto& [x_um, count] : from_x) EXPECT_GE(count, 2) << x_um;
-  EXPECT_EQ(sizes.size(), 7U);
+  EXPECT_EQ(sizes.size(), 25U);
   for (const auto& [tilt, both] : sizes) EXPECT_EQ(both.size(), 2U) << tilt[0] << " " << tilt[1];
-}
-
-/// Rotation vectors of the environments.
-std::vector<Vector3> turns_of(const std::vector<JudgedStart>& starts) {
-  std::vector<Vector3> turns;
-  for (const JudgedStart& start : starts) {
-    turns.push_back(rotation_vector(start.particle.environment.orientation));
-  }
-  return turns;
 }
 
 TEST(Validation, CornersAreTiltedInTurnAboutEveryAxisThatIsNoCoordinate) {
@@ -158,29 +158,45 @@ TEST(Validation, CornersAreTiltedInTurnAboutEveryAxisThatIsNoCoordinate) {
   task.starts.front().sigma[4] = 0.1;
   const Particle turned =
       particle_off(0.1 * Vector6::Unit(4), task, task.starts.front(), PhysicalParameters{});
-  EXPECT_FALSE(is_tilted(turned, task)) << "a coordinate";
+  EXPECT_EQ(tilt_of(turned, task, task.starts.front()).norm_rad(), 0.0) << "a coordinate";
   task.starts.front().sigma[4] = 0.0;
+  Plan plan;
+  plan.latency_max_s = 0.008;
   WallRollout rollout(room());
-  std::map<double, std::set<std::array<double, 3>>> tilts;  // by friction
-  for (const JudgedStart& start : corner_starts(Plan{}, task, task.starts.front(), rollout)) {
-    const Vector3 turn = turns_of({start}).front();
-    tilts[start.particle.physics.friction].insert({turn.x(), turn.y(), turn.z()});
-    EXPECT_EQ(is_tilted(start.particle, task), !turn.isZero());
-    EXPECT_FALSE(is_tilted(without_tilt(start.particle, task), task));
+  std::map<double, std::set<Urad>> tilts;  // by friction
+  for (const JudgedStart& start : corner_starts(plan, task, task.starts.front(), rollout)) {
+    const Start& nominal = task.starts.front();
+    tilts[start.particle.physics.friction].insert(urad_of(tilt_of(start.particle, task, nominal)));
+    const Particle level = without_tilt(start.particle, task, nominal);
+    EXPECT_EQ(tilt_of(level, task, nominal).norm_rad(), 0.0);
+    // The part is turned about the tool.
+    EXPECT_EQ(level.pose.position_m, start.particle.pose.position_m);
     // About the goal, which stays where it is.
     EXPECT_LT(
         (compose(start.particle.environment, task.goal).position_m - task.goal.position_m).norm(),
         1e-12);
   }
-  ASSERT_EQ(tilts.size(), 2U);
-  for (const auto& [friction, some] : tilts) {
-    ASSERT_EQ(some.size(), 5U) << "of friction " << friction;
-    for (const auto& [x, y, z] : some) {
-      EXPECT_EQ(y, 0.0);
-      EXPECT_TRUE(x == 0.0 || z == 0.0);
-      EXPECT_TRUE((x == 0.0 && z == 0.0) || std::abs(std::hypot(x, z) - 2e-3) < 1e-12);
+  // Of the environment, of the part, of both, and of one against the other.
+  constexpr std::array<std::array<double, 2>, 4> kKinds = {
+      {{2000.0, 0.0}, {0.0, 2000.0}, {1414.0, 1414.0}, {1414.0, -1414.0}}};
+  std::set<Urad> each = {Urad{}};
+  for (const std::size_t axis : {0U, 2U}) {  // rx and rz
+    for (const auto& [environment_urad, held_urad] : kKinds) {
+      for (const double way : {1.0, -1.0}) {
+        Urad one{};
+        one[axis] = way * environment_urad;
+        one[axis + 3] = way * held_urad + 0.0;
+        each.insert(one);
+      }
     }
   }
+  ASSERT_EQ(tilts.size(), 2U);
+  std::set<Urad> all;
+  for (const auto& [friction, some] : tilts) {
+    EXPECT_GT(some.size(), each.size() / 2) << "of friction " << friction;
+    all.insert(some.begin(), some.end());
+  }
+  EXPECT_EQ(all, each);
 }
 
 TEST(Validation, DrawsAreTiltedByAnythingUpToTheTasksTilt) {
@@ -191,21 +207,26 @@ TEST(Validation, DrawsAreTiltedByAnythingUpToTheTasksTilt) {
     return drawn_starts(5, 300, DrawnPhysics::kEven, Plan{}, task, task.starts.front(), rollout);
   };
   const std::vector<JudgedStart> tilted = drawn();
-  Vector3 low = Vector3::Zero();
-  Vector3 high = Vector3::Zero();
-  for (const Vector3& turn : turns_of(tilted)) {
-    EXPECT_LE(turn.norm(), 2e-3);
-    low = low.cwiseMin(turn);
-    high = high.cwiseMax(turn);
+  Vector6 low = Vector6::Zero();
+  Vector6 high = Vector6::Zero();
+  for (const JudgedStart& start : tilted) {
+    const Tilt tilt = tilt_of(start.particle, task, task.starts.front());
+    EXPECT_LE(tilt.norm_rad(), 2e-3 + 1e-12);
+    Vector6 both;
+    both << tilt.environment_rad, tilt.held_rad;
+    low = low.cwiseMin(both);
+    high = high.cwiseMax(both);
   }
-  EXPECT_LT(low.maxCoeff(), -1.5e-3);
-  EXPECT_GT(high.minCoeff(), 1.5e-3);
+  EXPECT_LT(low.maxCoeff(), -1.3e-3);
+  EXPECT_GT(high.minCoeff(), 1.3e-3);
   // Nothing else of them changes.
   task.tilt_rad = 0.0;
   const std::vector<JudgedStart> level = drawn();
   for (std::size_t i = 0; i < level.size(); ++i) {
-    EXPECT_EQ(level[i].particle.pose, tilted[i].particle.pose);
+    EXPECT_EQ(level[i].particle.pose.position_m, tilted[i].particle.pose.position_m);
     EXPECT_EQ(level[i].particle.physics, tilted[i].particle.physics);
+    EXPECT_EQ(level[i].particle.pose.orientation.coeffs(),
+              task.starts.front().pose.orientation.coeffs());
     EXPECT_EQ(level[i].particle.environment, Pose{});
   }
 }
@@ -259,6 +280,7 @@ TEST(Validation, TheFirstDrawWithinReachThatMissedSpeaksWithThePhysicsThatItHad)
   Task task = room_task();
   task.oversize_m = 1e-3;
   std::vector<Draw> draws(4);
+  const Start& start = task.starts.front();
   draws[0].sigmas_out = 1.0;
   draws[0].at_goal = true;
   EXPECT_EQ(missed_draw({&draws[0], 1}, 2.0), nullptr);
@@ -270,7 +292,7 @@ TEST(Validation, TheFirstDrawWithinReachThatMissedSpeaksWithThePhysicsThatItHad)
   draws[2].chain.failure = "outcome contact has no successor";
   const std::string stopped = ": step 1: outcome contact has no successor";
   EXPECT_EQ(missed_draw(draws, 2.0), &draws[2]);
-  EXPECT_EQ(refutation_of(draws[2], task).why,
+  EXPECT_EQ(refutation_of(draws[2], task, start).why,
             "a start 1.50 sigma out missed the goal at friction 0.6, latency 7.0 ms, the part 1 mm "
             "larger than drawn" +
                 stopped);
@@ -278,13 +300,19 @@ TEST(Validation, TheFirstDrawWithinReachThatMissedSpeaksWithThePhysicsThatItHad)
   task.tilt_rad = 3e-3;
   Pose& environment = draws[2].chain.start.environment;
   const auto ends_in = [&](const std::string& end) {
-    return refutation_of(draws[2], task).why.ends_with(end + stopped);
+    return refutation_of(draws[2], task, start).why.ends_with(end + stopped);
   };
   EXPECT_TRUE(ends_in("larger than drawn"));
   environment.orientation = rotation_of({0.0, 0.0, -3e-3});
   EXPECT_TRUE(ends_in("larger than drawn, tilted by -0.17 degrees about z"));
   environment.orientation = rotation_of({1e-3, 2e-3, 0.0});
   EXPECT_TRUE(ends_in("larger than drawn, tilted by 0.13 degrees"));
+  draws[2].chain.start.pose.orientation = rotation_of({0.0, 2e-3, 0.0}) * start.pose.orientation;
+  EXPECT_TRUE(ends_in(
+      "larger than drawn, tilted by 0.13 degrees, the part tilted in the hand by 0.11 degrees "
+      "about y"));
+  environment.orientation.setIdentity();
+  EXPECT_TRUE(ends_in("larger than drawn, the part tilted in the hand by 0.11 degrees about y"));
 }
 
 TEST(Validation, AStartOnTheRimThatCollidesIsLeftOut) {
