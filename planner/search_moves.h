@@ -24,8 +24,8 @@ namespace tenon::planner {
                                          const CellAssumptions& assumptions);
 
 /// Where nothing turns, the search looks at moves with twice the step of what is judged, in half
-/// the time; what is wrong with a path for that is refuted like anything else. A part that aligns
-/// with what it meets does otherwise with longer steps.
+/// the time; a path that holds by that alone is refuted like any other. A part that aligns with
+/// what it meets does otherwise with longer steps.
 [[nodiscard]] std::int64_t search_step_us(const Task& task);
 
 /// What of the search's moves the arm can make.

@@ -22,7 +22,7 @@ class TiltEffort {
     paths_ = 0;
   }
 
-  /// A path was refuted. @param by_tilt see Refutation
+  /// A path was refuted. @param by_tilt see Refutation  @param steps of the path
   void refute(bool by_tilt, std::size_t steps, std::uint64_t moves) {
     if (!by_tilt) return;
     if (allowed_ == 0) allowed_ = std::max<std::uint64_t>(moves - began_at_, kRunsOfAPath * steps);
@@ -33,7 +33,8 @@ class TiltEffort {
   [[nodiscard]] bool refuted() const { return refuted_at_.has_value(); }
   /// Once the tilt has refuted a path, another is looked for with as many moves again as it took to
   /// find and refute the first path that any tilt refuted, or as kRunsOfAPath runs of that path
-  /// take, and so on from each that is found and refuted, up to kPathsMax of them.
+  /// take where that is more, and so on from each that is found and refuted, up to kPathsMax of
+  /// them.
   [[nodiscard]] bool spent(std::uint64_t moves) const {
     return refuted() && (paths_ >= kPathsMax || moves >= *refuted_at_ + allowed_);
   }

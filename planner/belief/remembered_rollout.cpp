@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -13,8 +14,24 @@
 namespace tenon::planner {
 namespace {
 
-// Some 60 MB. Whoever asks for more asks for what comes late anew.
+// Some 100 MB. Whoever asks for more asks for what comes late anew.
 constexpr std::size_t kKnownMax = 100'000;
+
+}  // namespace
+
+namespace {
+
+bool same(const MoveParameters& a, const MoveParameters& b) {
+  const auto from = [](const MoveParameters& move) {
+    return move.carried_from ? move.carried_from->coeffs() : Eigen::Vector4d::Zero().eval();
+  };
+  const auto rest = [](const MoveParameters& move) {
+    return std::tie(move.slow_from_m, move.speeds, move.thresholds, move.compliance,
+                    move.force_limit_N, move.torque_limit_Nm, move.timeout_us, move.trigger_mask,
+                    move.sensed_axes, move.aligns);
+  };
+  return a.displacement == b.displacement && rest(a) == rest(b) && from(a) == from(b);
+}
 
 }  // namespace
 
@@ -25,20 +42,23 @@ class RememberedRollout::Memory {
     MoveParameters move;
     std::int64_t step_us = 0;
 
-    friend bool operator==(const Question&, const Question&) = default;
+    friend bool operator==(const Question& a, const Question& b) {
+      return a.particle == b.particle && same(a.move, b.move) && a.step_us == b.step_us;
+    }
   };
 
   /// By what mostly tells questions apart.
   struct QuestionHash {
     std::size_t operator()(const Question& question) const {
       const Particle& particle = question.particle;
-      const std::array<double, 20> values = {particle.pose.position_m.x(),
+      const std::array<double, 23> values = {particle.pose.position_m.x(),
                                              particle.pose.position_m.y(),
                                              particle.pose.position_m.z(),
                                              particle.pose.orientation.x(),
                                              particle.pose.orientation.y(),
                                              particle.pose.orientation.z(),
                                              particle.environment.position_m.x(),
+                                             particle.environment.position_m.y(),
                                              particle.environment.position_m.z(),
                                              particle.environment.orientation.x(),
                                              particle.environment.orientation.y(),
@@ -49,7 +69,9 @@ class RememberedRollout::Memory {
                                              question.move.displacement[0],
                                              question.move.displacement[1],
                                              question.move.displacement[2],
+                                             question.move.displacement[3],
                                              question.move.displacement[4],
+                                             question.move.displacement[5],
                                              question.move.slow_from_m,
                                              static_cast<double>(question.step_us)};
       return fnv1a_64({reinterpret_cast<const char*>(values.data()), sizeof(values)});

@@ -5,7 +5,7 @@
 
 namespace tenon::planner {
 
-/// Guarded moves simulated, and how long that took.
+/// Guarded moves run, also those that were known (remembered_rollout.h), and how long that took.
 struct Effort {
   std::uint64_t moves = 0;
   double time_s = 0.0;

@@ -35,16 +35,22 @@ std::vector<PhysicalParameters> largest(std::vector<PhysicalParameters> all, con
   return all;
 }
 
+/// Where moves turn with the tool, a particle's pose is what the arm knows of it, and has no room
+/// for a turn that it does not know of.
+bool part_may_be_tilted(const Task& task) { return !task.motion.carried_axes; }
+
 /// None, and as far as it may be about each axis, either way, of the environment, of the part in
 /// the hand, and of both, together and apart: an odd number, so that taking turns ties none of them
 /// to a corner.
 std::vector<Tilt> extreme_tilts(const Task& task) {
   std::vector<Tilt> tilts = {{}};
+  const bool held = part_may_be_tilted(task);
   for (const int axis : tilted_axes(task)) {
     for (const double turn_rad : {task.tilt_rad, -task.tilt_rad}) {
       const Vector3 turn = turn_rad * Vector3::Unit(axis - 3);
       const Vector3 each = std::sqrt(0.5) * turn;
       tilts.push_back({turn, Vector3::Zero()});
+      if (!held) continue;
       tilts.push_back({Vector3::Zero(), turn});
       tilts.push_back({each, each});
       tilts.push_back({each, -each});
@@ -56,12 +62,13 @@ std::vector<Tilt> extreme_tilts(const Task& task) {
 /// Evenly from the ball of all tilts, of both together.
 Tilt draw_tilt(Random& random, const Task& task) {
   const std::vector<int> axes = tilted_axes(task);
+  const bool held = part_may_be_tilted(task);
   Tilt tilt;
   const auto drawn = [&] { return random.uniform(-task.tilt_rad, task.tilt_rad); };
   do {
     for (const int axis : axes) {
       tilt.environment_rad[axis - 3] = drawn();
-      tilt.held_rad[axis - 3] = drawn();
+      if (held) tilt.held_rad[axis - 3] = drawn();
     }
   } while (tilt.norm_rad() > task.tilt_rad);
   return tilt;
@@ -237,10 +244,11 @@ std::vector<JudgedStart> passage_starts(const Plan& plan, const Task& task, cons
   const std::size_t each = 2 * ((rim.size() - 1) / tilts.size() + 1);
   std::vector<JudgedStart> starts;
   for (std::size_t i = 0; i < each * tilts.size(); ++i) {
-    const JudgedStart& from = rim[i % rim.size()];
+    const JudgedStart& from = rim[(i + i / rim.size()) % rim.size()];
     Particle particle = tilted(from.particle, tilts[i / each], task);
     if (rollout.in_collision(particle.tool())) particle = from.particle;
-    particle.physics = physics[(2 * i + i % 2) % physics.size()];
+    // Odd ones as drawn, where that is another size; no kind of tilt goes with the rest.
+    particle.physics = physics[(2 * (i / 2 + i / (4 * each)) + i % 2) % physics.size()];
     starts.push_back({particle, from.sigmas_out});
   }
   return starts;

@@ -55,8 +55,9 @@ struct Tilt {
 /// On the rim of the particles' reach, c_p standard deviations out or at the bounds, along every
 /// uncertain coordinate both ways and to every corner between them; each at all corners of
 /// friction, size and latency, and tilted in turn about each axis that is no coordinate, either
-/// way (the environment, the part in the hand, both the same way or against each other), and not at
-/// all; a tilt by which one would collide it does without.
+/// way, and not at all, as far as there are starts for all of that; a tilt by which one would
+/// collide it does without. What is tilted is the environment and, where moves do not turn with the
+/// tool, the part in the hand, or both, the same way or against each other.
 [[nodiscard]] std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task,
                                                      const Start& start, Rollout& rollout);
 

@@ -50,9 +50,9 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses
   if (slow.method == PlanMethod::kMha) {
     const std::vector<Draw> looked =
         run(slow, screening_starts(slow, held_, start_, pool_.front()), effort_.corners);
-    if (const auto miss = missed(slow, looked)) {
-      // The first in the order of the corners.
-      return misses == Misses::kAll ? *miss : missed(slow, corners_of(slow)).value_or(*miss);
+    if (missed_draw(looked, task_.particle_sigmas) != nullptr) {
+      // Else the first of all corners that misses, which these are some of.
+      return *missed(slow, misses == Misses::kAll ? looked : corners_of(slow));
     }
     Judgement judgement = at_once(slow, good_chains(looked));
     if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;

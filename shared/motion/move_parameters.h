@@ -96,8 +96,6 @@ struct MoveParameters {
   /// Set: the move's axes have turned with the tool as far as it is turned away from this
   /// orientation as the move begins. A tool that has aligned with a face so moves along that face.
   std::optional<Eigen::Quaterniond> carried_from;
-
-  friend bool operator==(const MoveParameters&, const MoveParameters&) = default;
 };
 
 }  // namespace tenon

@@ -123,13 +123,17 @@ void expect_good(const Task& task, const std::vector<std::uint8_t>& bytes,
   const bool turns = (task.coordinates >> 3U) != 0;
   EXPECT_LE(bytes.size(), turns ? 4096U : 2048U);
   // Draws have all of the task's tilt. Where that is more than the plan holds, it is what misses.
-  const bool all_tilt = draws.tilt_rad == task.tilt_rad;
+  const bool all_tilt = draws.tilt_rad == tilts_to_hold(task).front();
   EXPECT_GE(draws.at_goal_within(task.particle_sigmas),
             (all_tilt ? 0.95 : 0.9) * static_cast<double>(draws.within(task.particle_sigmas)));
+  std::size_t promised = 0;
+  std::size_t kept = 0;
   for (const Draw& draw : draws.draws) {
-    if (draw.at_goal || all_tilt) continue;
-    EXPECT_FALSE(is_promised(draw, draws, task, start));
+    if (!is_promised(draw, draws, task, start)) continue;
+    ++promised;
+    kept += draw.at_goal ? 1 : 0;
   }
+  EXPECT_GE(20 * kept, 19 * promised);
   // Two steps and two frictions, the part as drawn, two latencies.
   EXPECT_EQ(certification.runs.size(), task.oversize_m > 0.0 ? 7U : 6U);
   for (const VariantRun& run : certification.runs) {

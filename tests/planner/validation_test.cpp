@@ -197,6 +197,13 @@ TEST(Validation, CornersAreTiltedInTurnAboutEveryAxisThatIsNoCoordinate) {
     all.insert(some.begin(), some.end());
   }
   EXPECT_EQ(all, each);
+
+  // What moves that turn with the tool go by has no turn that the arm does not know of.
+  task.motion.carried_axes = true;
+  const std::vector<JudgedStart> starts = corner_starts(plan, task, task.starts.front(), rollout);
+  EXPECT_TRUE(std::all_of(starts.begin(), starts.end(), [&](const JudgedStart& start) {
+    return tilt_of(start.particle, task, task.starts.front()).held_rad.isZero();
+  }));
 }
 
 TEST(Validation, DrawsAreTiltedByAnythingUpToTheTasksTilt) {

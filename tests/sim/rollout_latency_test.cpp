@@ -90,6 +90,19 @@ TEST(RolloutLatency, HalfTheIntegrationStepSeesTheSameLatency) {
   }
 }
 
+TEST(RolloutLatency, TwiceTheIntegrationStepSeesNoLessOfIt) {
+  OdeRollout rollout(plate_and_wall());
+  const Particle start = resting_on_the_plate(rollout, 0.0);
+  const double at_once_m = along_x(0.0, start, rollout, 4000).pose.position_m.x();
+  // One step of the task's, and five: an odd number of them.
+  for (const double latency_s : {0.002, kLatency_s}) {
+    const double passed_m = latency_s * MoveParameters{}.speeds.contact_mps;
+    EXPECT_GT(along_x(latency_s, start, rollout, 4000).pose.position_m.x() - at_once_m,
+              0.5 * passed_m)
+        << latency_s;
+  }
+}
+
 TEST(RolloutLatency, InFreeAirNothingIsNoticed) {
   OdeRollout rollout(plate_and_wall());
   Particle start;

@@ -41,12 +41,14 @@ Vector3 resting_force_N(const Particle& particle, const MoveParameters& move) {
   return force_N;
 }
 
-/// Rounded up to whole steps of the task's, so that half of them see the same.
+/// Rounded up to whole steps of the task's, so that half of them see the same, and from those to
+/// steps that are longer.
 std::size_t steps_of(double latency_s, std::int64_t task_step_us, std::int64_t step_us) {
   constexpr double kRounding = 1e-6;  // of a value that a plan file holds
   const double whole = std::ceil((1.0 - kRounding) * latency_s /
                                  (kMicrosecond_s * static_cast<double>(task_step_us)));
-  return static_cast<std::size_t>(static_cast<std::int64_t>(whole) * task_step_us / step_us);
+  const std::int64_t latency_us = static_cast<std::int64_t>(whole) * task_step_us;
+  return static_cast<std::size_t>((latency_us + step_us - 1) / step_us);
 }
 
 }  // namespace
