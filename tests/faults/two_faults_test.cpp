@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/faults/mover_of.h"
 #include "tests/support/faulty_options.h"
 #include "tests/support/planned.h"
 #include "tests/support/whole_run.h"
@@ -88,7 +89,8 @@ std::vector<Case> cases(const Plan& plan) {
 }
 
 // What comes while the drives stop, and together.
-std::vector<Case> others() {
+std::vector<Case> others(const Plan& plan) {
+  const std::string mover = mover_of(plan, 2);
   return {
       {"another master while the drives stop",
        {"forged-force:at=free,time_s=0.3,force_N=80,duration_s=0.01"},
@@ -111,9 +113,10 @@ std::vector<Case> others() {
        EndReason::kArmFault,
        "node 1"},
       {"a frozen drive whose heartbeat is lost",
-       {"frozen-drive:node=1,at=step:2", "drop:node=1,id=heartbeat,at=step:2,duration_s=100"},
+       {"frozen-drive:" + mover + ",at=step:2",
+        "drop:" + mover + ",id=heartbeat,at=step:2,duration_s=100"},
        EndReason::kFollowingError,
-       "node 1"},
+       "node "},
       {"an encoder jumps as a force is felt",
        {"encoder-jump:node=1,at=step:2,time_s=0.2,jump_m=0.05",
         "forged-force:at=step:2,time_s=0.2,force_N=80,duration_s=0.01"},
@@ -154,8 +157,9 @@ void expect_named_and_safe(const Case& one) {
 }
 
 TEST(TwoFaults, TheFirstIsTheRunsNameAndTheArmIsLeftInItsBrakesAndNothingIsLost) {
-  for (const Case& one : cases(box_plan("4"))) expect_named_and_safe(one);
-  for (const Case& one : others()) expect_named_and_safe(one);
+  const Plan& plan = box_plan("4");
+  for (const Case& one : cases(plan)) expect_named_and_safe(one);
+  for (const Case& one : others(plan)) expect_named_and_safe(one);
 }
 
 }  // namespace
