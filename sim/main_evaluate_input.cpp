@@ -1,9 +1,10 @@
 #include "sim/main_evaluate_input.h"
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
 
 #include "shared/base/error.h"
@@ -21,8 +22,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string hash_of(const std::string& bytes) {
-  return format("%016llx", static_cast<unsigned long long>(fnv1a_64(bytes)));
+std::string hex(std::uint64_t hash) {
+  return format("%016llx", static_cast<unsigned long long>(hash));
+}
+
+std::string hash_of(const std::string& bytes) { return hex(fnv1a_64(bytes)); }
+
+/// Of a file that need not fit into memory.
+std::string hash_of_file(const char* path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 1 << 16> part;
+  std::uint64_t hash = kFnv1aOfNothing;
+  while (file.read(part.data(), part.size()), file.gcount() > 0) {
+    hash = fnv1a_64({part.data(), static_cast<std::size_t>(file.gcount())}, hash);
+  }
+  return hex(hash);
 }
 
 std::string replay_of(const EvaluateLine& line) {
@@ -62,14 +76,12 @@ void check_other(const EvaluateLine& line, const sim::Candidate& candidate,
 std::string identity_of(const EvaluateLine& line, const Task& task) {
   std::string cell;
   for (const auto& file : cell_files(line.cell)) cell += config::read_file(file);
-  std::ostringstream program;
-  program << std::ifstream("/proc/self/exe", std::ios::binary).rdbuf();
 
   nlohmann::ordered_json identity;
   identity["tenon-evaluate"] = TENON_VERSION;
-  identity["program"] = hash_of(program.str());
+  identity["program"] = hash_of_file("/proc/self/exe");
   identity["cell"] = hash_of(cell);
-  identity["task"] = format("%016llx", static_cast<unsigned long long>(task.hash));
+  identity["task"] = hex(task.hash);
   identity["experiment"] =
       line.experiment.empty() ? "" : hash_of(config::read_file(line.experiment));
   identity["corner"] = line.corner;

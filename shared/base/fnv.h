@@ -6,8 +6,12 @@
 
 namespace tenon {
 
-[[nodiscard]] constexpr std::uint64_t fnv1a_64(std::string_view bytes) {
-  std::uint64_t hash = 0xCBF29CE484222325;
+/// Of no bytes at all.
+inline constexpr std::uint64_t kFnv1aOfNothing = 0xCBF29CE484222325;
+
+/// @param hash of the bytes before these
+[[nodiscard]] constexpr std::uint64_t fnv1a_64(std::string_view bytes,
+                                               std::uint64_t hash = kFnv1aOfNothing) {
   for (const char byte : bytes) {
     hash = (hash ^ static_cast<std::uint8_t>(byte)) * 0x100000001B3;
   }

@@ -93,6 +93,7 @@ TEST(Hash, GivesThePublishedValuesOfFnv1a) {
   EXPECT_EQ(fnv1a_64({}), 0xCBF29CE484222325);
   EXPECT_EQ(fnv1a_64("a"), 0xAF63DC4C8601EC8C);
   EXPECT_EQ(fnv1a_64("foobar"), 0x85944171F73967E8);
+  EXPECT_EQ(fnv1a_64("bar", fnv1a_64("foo")), 0x85944171F73967E8) << "in two parts";
 }
 
 }  // namespace
