@@ -13,10 +13,14 @@ namespace tenon::planner {
 
 class TiltEffort {
  public:
-  /// From now on another tilt is held.
+  /// From now on a smaller tilt is held, if any was held before, and looked for kMoreForLess times
+  /// as long: there is less and less to give up instead.
   /// @param moves simulated so far, as everywhere here  @param search counters of the search
   void begin(std::uint64_t moves, const SuccessorEngine::Counters& search) {
-    if (refuted()) searched_before_ = search.rollouts + search.memo_hits;
+    if (refuted()) {
+      searched_before_ = search.rollouts + search.memo_hits;
+      allowed_ *= kMoreForLess;
+    }
     began_at_ = moves;
     refuted_at_.reset();
     paths_ = 0;
@@ -34,7 +38,7 @@ class TiltEffort {
   /// Once the tilt has refuted a path, another is looked for with as many moves again as it took to
   /// find and refute the first path that any tilt refuted, or as kRunsOfAPath runs of that path
   /// take where that is more, and so on from each that is found and refuted, up to kPathsMax of
-  /// them.
+  /// them; for as many times longer as begin() says.
   [[nodiscard]] bool spent(std::uint64_t moves) const {
     return refuted() && (paths_ >= kPathsMax || moves >= *refuted_at_ + allowed_);
   }
@@ -49,6 +53,7 @@ class TiltEffort {
   static constexpr int kPathsMax = 8;
   /// A plan that holds is judged by six times as many.
   static constexpr std::uint64_t kRunsOfAPath = 100;
+  static constexpr std::uint64_t kMoreForLess = 10;
 
   std::uint64_t began_at_ = 0;
   std::optional<std::uint64_t> refuted_at_;  ///< the last time

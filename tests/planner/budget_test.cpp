@@ -34,6 +34,13 @@ TEST(TiltEffort, AnotherPathIsLookedForAsLongAsTheFirstTookOrAHundredRunsOfItWou
       effort.refute(true, 2 * kSteps, moves += allowed - 1);
     }
     EXPECT_TRUE(effort.spent(moves));
+
+    // A smaller tilt is worth more.
+    effort.begin(moves, {});
+    EXPECT_FALSE(effort.spent(moves + 20 * allowed)) << "not refuted yet";
+    effort.refute(true, kSteps, moves);
+    EXPECT_FALSE(effort.spent(moves + 10 * allowed - 1));
+    EXPECT_TRUE(effort.spent(moves + 10 * allowed));
   }
 }
 
