@@ -221,7 +221,7 @@ class Planning {
   }
 
   /// A start that was not known makes the next try take another way; one that was, and did
-  /// otherwise than the search had it, makes the next tries go by the true physics.
+  /// otherwise than the search had it, makes the next tries go by what judges.
   bool leads(const Guide& guide) {
     SuccessorEngine* succ = &succ_;
     for (int tries = 0; tries < kTriesAGuide && !out_of_budget(); ++tries) {

@@ -31,7 +31,7 @@ struct PlannerOptions {
   /// throughout, checks no envelope, and is validated as any other but never refused for it.
   PlanMethod method = PlanMethod::kMha;
   /// Of the same task: what is searched on. It may be fast and wrong, since whatever is written is
-  /// certified and judged by the true physics alone. Null: the true one.
+  /// certified and judged by the true physics alone. Null: that one too.
   const Rollout* search_physics = nullptr;
   std::size_t threads = 1;  ///< >= 1; the plan does not depend on it
   /// What the cell is like that will execute the plan, see fit_to_cell(). Unset: its contact

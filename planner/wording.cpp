@@ -101,7 +101,7 @@ std::string smaller_tilt(double held_rad) {
 std::string way_refuted(std::size_t starts, bool truer) {
   if (starts > 1) return format("; %zu starts that missed become particles", starts);
   if (starts == 1) return "; it becomes a particle";
-  return truer ? "; followed by the true physics" : "; the guide is left";
+  return truer ? "; now followed by the physics that judges" : "; the guide is left";
 }
 
 std::string lesson(const Refutation& refutation, std::optional<std::size_t> refused_step) {

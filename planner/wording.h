@@ -42,7 +42,8 @@ struct SearchLimits {
 [[nodiscard]] std::string smaller_tilt(double held_rad);
 
 /// What follows for the next way that a guide leads from what refuted the last one.
-/// @param starts that have become particles  @param truer whether the true physics is gone by then
+/// @param starts that have become particles  @param truer whether the guide is followed by what
+/// judges then
 [[nodiscard]] std::string way_refuted(std::size_t starts, bool truer);
 
 /// What refuted a path, and what was learnt from it.

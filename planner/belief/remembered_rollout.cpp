@@ -14,12 +14,8 @@
 namespace tenon::planner {
 namespace {
 
-// Some 100 MB. Whoever asks for more asks for what comes late anew.
+// Some 50 MB. Whoever asks for more asks for what comes late anew.
 constexpr std::size_t kKnownMax = 100'000;
-
-}  // namespace
-
-namespace {
 
 bool same(const MoveParameters& a, const MoveParameters& b) {
   const auto from = [](const MoveParameters& move) {

@@ -88,7 +88,7 @@ TEST(SearchedGraph, GainsWhatIsAsFarOffTheOtherWayWhereMovesAreAimedAtTheMean) {
 TEST(SearchedGraph, SaysWhatFollowsForTheNextWay) {
   EXPECT_EQ(way_refuted(3, false), "; 3 starts that missed become particles");
   EXPECT_EQ(way_refuted(1, false), "; it becomes a particle");
-  EXPECT_EQ(way_refuted(0, true), "; followed by the true physics");
+  EXPECT_EQ(way_refuted(0, true), "; now followed by the physics that judges");
   EXPECT_EQ(way_refuted(0, false), "; the guide is left");
 }
 

@@ -197,7 +197,7 @@ TEST(TouchTurns, AreFollowedByTheTruePhysicsWhereTheOtherHadAKnownStartWrong) {
   EXPECT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
   EXPECT_TRUE(
       std::any_of(report.refusals.begin(), report.refusals.end(), [](const std::string& refusal) {
-        return refusal.find("followed by the true physics") != std::string::npos;
+        return refusal.find("now followed by the physics that judges") != std::string::npos;
       }));
 }
 
