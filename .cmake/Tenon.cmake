@@ -3,7 +3,7 @@
 #   tenon_library(NAME [EXCEPT FOLDER...] [PUBLIC DEP...] [PRIVATE DEP...])
 #   tenon_main(NAME SOURCE [DEP...])
 #   tenon_lcm_types(NAME)
-#   tenon_test(AREA [SERIAL|UNLISTED] [PLANS] [EXECUTABLES MAIN...] [FULL FILTER...])
+#   tenon_test(AREA [SERIAL|UNLISTED] [PLANS] [EXECUTABLES MAIN...] [FULL_EXECUTABLES MAIN...] [FULL FILTER...])
 #   tenon_area_runs(AREA [PROGRAMS TARGET...] [FILES FILE...])
 #   tenon_test_program(NAME [DEP...])     for benchmarks and fuzzers
 #   tenon_plan(NAME TASK [START NAME] [CELL FILE] [FULL])
@@ -263,11 +263,12 @@ endfunction()
 # SERIAL: its tests run one at a time, because they run in real time.
 # UNLISTED: built but not registered, because its tests need another machine (tests/guest).
 # EXECUTABLES: what its tests run, and is therefore built before it.
+# FULL_EXECUTABLES: what only those with the label full run besides.
 # PLANS: its tests read plans of tests/plans, which are therefore made before it is linked.
 # FULL: GoogleTest filters of the tests that only a release needs. They get the label full in place of
 # the area's.
 function(tenon_test area)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL;UNLISTED;PLANS" "" "EXECUTABLES;FULL")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL;UNLISTED;PLANS" "" "EXECUTABLES;FULL_EXECUTABLES;FULL")
   tenon_has_area(${area} wanted)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${area}/*.cpp)
   if(NOT wanted OR NOT sources)
@@ -276,8 +277,8 @@ function(tenon_test area)
   add_executable(tests_${area} ${sources})
   tenon_test_program(tests_${area} test_support ODE::ODE LCM::lcm yaml-cpp Threads::Threads
     nlohmann_json::nlohmann_json GTest::gtest_main GTest::gmock)
-  if(arg_EXECUTABLES)
-    add_dependencies(tests_${area} ${arg_EXECUTABLES})
+  if(arg_EXECUTABLES OR arg_FULL_EXECUTABLES)
+    add_dependencies(tests_${area} ${arg_EXECUTABLES} ${arg_FULL_EXECUTABLES})
   endif()
   if(arg_PLANS)
     get_property(plans GLOBAL PROPERTY TENON_PLANS)
