@@ -15,7 +15,9 @@ std::string names_of(const std::set<std::string>& names) {
 }
 
 std::string amount(double value, int axis) {
-  return format(axis < 3 ? "%.1f mm" : "%.2f\u00b0", shown(value, axis));
+  const double told = shown(value, axis);
+  if (axis < 3) return format(told < 0.1 ? "%.3f mm" : "%.1f mm", told);
+  return format(told < 0.01 ? "%.4f\u00b0" : "%.2f\u00b0", told);
 }
 
 std::string spread_text(const Plan& plan, const Vector6& spread) {

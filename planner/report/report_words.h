@@ -15,7 +15,7 @@ inline constexpr double kCollapsed = 0.2;
 /// "wall, table", escaped.
 [[nodiscard]] std::string names_of(const std::set<std::string>& names);
 
-/// "1.2 mm" or degrees, of m or rad.
+/// "1.2 mm" or degrees, of m or rad; with two digits more where little is left.
 [[nodiscard]] std::string amount(double value, int axis);
 
 /// The coordinates of the plan, each with an amount.
