@@ -16,7 +16,7 @@
 # Who may use whom. One row per target: everything that it may link, and therefore include.
 # ---------------------------------------------------------------------------------------------
 set(TENON_LIBRARIES shared shared_canopen shared_mit shared_system shared_drawing shared_eds shared_config lcmtypes lcmtypes_received
-    planner planner_belief planner_search planner_judge planner_check planner_report planner_new_task
+    planner planner_belief planner_search planner_judge planner_check planner_report planner_cell_fit planner_new_task
     executor executor_faults executor_states executor_record executor_motion executor_sensing executor_dry_run
     executor_loop executor_identification executor_telemetry executor_monitor executor_recorded
     executor_export hw_can hw_canopen hw_cia402 hw_sensors hw_arm hw_mit hw_robot_arm hw_load hw_check
@@ -32,10 +32,11 @@ set(TENON_MAY_USE_shared_config shared shared_canopen shared_mit shared_system y
                                 console_bridge::console_bridge nlohmann_json::nlohmann_json CLI11::CLI11)
 set(TENON_MAY_USE_lcmtypes      LCM::headers)
 set(TENON_MAY_USE_lcmtypes_received shared lcmtypes)
-set(TENON_MAY_USE_planner       shared planner_belief planner_search planner_judge)
+set(TENON_MAY_USE_planner       shared planner_cell_fit planner_belief planner_search planner_judge)
+set(TENON_MAY_USE_planner_cell_fit shared)
 set(TENON_MAY_USE_planner_belief shared shared_system)
 set(TENON_MAY_USE_planner_search shared planner_belief)
-set(TENON_MAY_USE_planner_judge  shared planner_belief)
+set(TENON_MAY_USE_planner_judge  shared planner_belief planner_cell_fit)
 set(TENON_MAY_USE_planner_check  shared planner_belief planner_search)
 set(TENON_MAY_USE_planner_new_task shared)
 set(TENON_MAY_USE_planner_report shared shared_drawing planner planner_belief planner_judge planner_check
@@ -90,9 +91,9 @@ set(TENON_MAY_USE_sim_evaluation_chain shared shared_system sim_evaluation sim_c
 set(TENON_MAY_USE_any_main      shared shared_system Threads::Threads CLI11::CLI11
                                 nlohmann_json::nlohmann_json)
 # What an arm can do is told to the planner, behind its port, by the dry run and the kinematics under it.
-set(TENON_MAY_USE_tenon-plan     planner planner_check planner_report planner_new_task executor_dry_run sim_physics
+set(TENON_MAY_USE_tenon-plan     planner planner_check planner_report planner_cell_fit planner_new_task executor_dry_run sim_physics
                                  shared_config)
-set(TENON_MAY_USE_tenon-inspect  planner planner_report executor_recorded sim_physics shared_config)
+set(TENON_MAY_USE_tenon-inspect  planner planner_report planner_cell_fit executor_recorded sim_physics shared_config)
 set(TENON_MAY_USE_tenon-exec     executor executor_dry_run executor_identification
                                  executor_loop executor_telemetry hw_can hw_robot_arm hw_load shared_config)
 set(TENON_MAY_USE_tenon-monitor  executor_monitor executor_export executor_telemetry shared_config LCM::lcm Ncurses::ncursesw)

@@ -13,7 +13,7 @@
 
 #include "executor/recorded/result_file.h"
 #include "executor/recorded/run_log.h"
-#include "planner/cell_fit.h"
+#include "planner/cell_fit/cell_fit.h"
 #include "planner/goal_certainty.h"
 #include "planner/report/html_report.h"
 #include "planner/report/inspection.h"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "executor/dry_run/cell_reach.h"
-#include "planner/cell_fit.h"
+#include "planner/cell_fit/cell_fit.h"
 #include "planner/check/task_check.h"
 #include "planner/goal_certainty.h"
 #include "planner/main_plan_new_task.h"

@@ -17,7 +17,7 @@
 #include <optional>
 #include <string>
 
-#include "planner/judge/plan_draft.h"
+#include "planner/cell_fit/cell_assumptions.h"
 #include "planner/judge/timed.h"
 #include "planner/plan_report.h"
 #include "shared/ports/arm_reach.h"

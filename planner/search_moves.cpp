@@ -5,6 +5,7 @@
 
 #include "planner/belief/primitives.h"
 #include "planner/judge/envelopes.h"
+#include "planner/judge/plan_draft.h"
 #include "shared/task/spread.h"
 
 namespace tenon::planner {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "planner/belief/move_reach.h"
-#include "planner/judge/plan_draft.h"
+#include "planner/cell_fit/cell_assumptions.h"
 #include "shared/motion/move_parameters.h"
 #include "shared/ports/arm_reach.h"
 #include "shared/task/task.h"

@@ -4,16 +4,11 @@
 
 #include <span>
 
+#include "planner/cell_fit/cell_assumptions.h"
 #include "shared/plan/plan.h"
 #include "shared/task/task.h"
 
 namespace tenon::planner {
-
-/// What the plan assumes of the cell that will execute it.
-struct CellAssumptions {
-  double contact_stiffness_Npm = 5e4;
-  double latency_max_s = 0.010;  ///< (n + 1/2) T + tau_arm
-};
 
 /// A plan whose steps have these displacements and contact speed throughout, in which every outcome
 /// but a timeout leads on and no envelope is checked yet. As it comes back from its own bytes:

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/cell_fit.h"
+#include "planner/cell_fit/cell_fit.h"
 #include "planner/planner.h"
 #include "shared/system/fan_out.h"
 #include "sim/physics/rollout/ode_rollout.h"

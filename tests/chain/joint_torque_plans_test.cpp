@@ -14,7 +14,7 @@
 #include "executor/dry_run/dry_run.h"
 #include "executor/dry_run/plan_check.h"
 #include "hw/bus_load/bus_load.h"
-#include "planner/cell_fit.h"
+#include "planner/cell_fit/cell_fit.h"
 #include "shared/base/error.h"
 #include "tests/support/commands.h"
 #include "tests/support/places.h"

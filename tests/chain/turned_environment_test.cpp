@@ -8,7 +8,7 @@
 
 #include "executor/dry_run/dry_run.h"
 #include "executor/dry_run/plan_check.h"
-#include "planner/cell_fit.h"
+#include "planner/cell_fit/cell_fit.h"
 #include "shared/config/load.h"
 #include "sim/cell/virtual_arm/environment_offset.h"
 #include "tests/support/places.h"

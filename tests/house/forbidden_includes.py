@@ -15,7 +15,7 @@ ALLOWED_TO_ALL = "shared/base/error.h"
 
 # For each target, the targets whose headers it may include beside its own. Written down a second time on
 # purpose: this is what the design says, and CMake's table is what is being checked.
-PLANNER = {"shared", "planner_belief", "planner_search", "planner_judge"}
+PLANNER = {"shared", "planner_belief", "planner_search", "planner_judge", "planner_cell_fit"}
 CONTROL = {"shared", "executor_faults", "executor_states", "executor_record", "executor_motion", "executor_sensing"}
 LOOP = CONTROL | {"executor_dry_run"}
 HW_ARM = {"shared", "shared_canopen", "hw_canopen", "hw_cia402", "hw_sensors"}
@@ -27,9 +27,10 @@ MAY_INCLUDE = {
     "shared_drawing": {"shared"},
     "shared_eds": {"shared"},
     "shared_config": {"shared", "shared_canopen", "shared_mit", "shared_system"},
+    "planner_cell_fit": {"shared"},
     "planner_belief": {"shared", "shared_system"},
     "planner_search": {"shared", "planner_belief"},
-    "planner_judge": {"shared", "planner_belief"},
+    "planner_judge": {"shared", "planner_belief", "planner_cell_fit"},
     "planner": PLANNER,
     "planner_check": {"shared", "planner_belief", "planner_search"},
     "planner_new_task": {"shared"},
@@ -69,7 +70,8 @@ MAY_INCLUDE = {
     "hw_robot_arm": HW_ARM | {"shared_mit", "hw_arm", "hw_mit"},
     "hw_load": HW_ARM | {"shared_mit", "hw_arm", "hw_mit"},
     "hw_check": HW_ARM | {"shared_mit", "hw_mit", "shared_eds", "hw_arm", "hw_load"},
-    "tenon-plan": PLANNER | {"shared_config", "shared_system", "planner", "planner_check", "planner_report", "planner_new_task",
+    "tenon-plan": PLANNER | {"shared_config", "shared_system", "planner", "planner_check", "planner_report",
+                             "planner_new_task",
                              "sim_physics", "executor_dry_run", "executor_motion", "executor_states",
                              "executor_faults"},
     "tenon-inspect": PLANNER | {"shared_config", "shared_system", "planner", "planner_check", "planner_report", "sim_physics",

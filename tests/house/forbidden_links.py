@@ -15,8 +15,8 @@ from build_tree import FOLDERS, SOURCE
 
 # (what is tried, file, text to replace or None to append, new text, what the message must name)
 CASES = [
-    ("planner declares physics", "planner/CMakeLists.txt", "PUBLIC shared planner_belief planner_search",
-     "PUBLIC shared sim_physics planner_belief planner_search", "'planner' may not use 'sim_physics'"),
+    ("planner declares physics", "planner/CMakeLists.txt", "PUBLIC shared planner_cell_fit planner_belief",
+     "PUBLIC shared sim_physics planner_cell_fit planner_belief", "'planner' may not use 'sim_physics'"),
     ("shared declares ODE", "shared/CMakeLists.txt", "PUBLIC Eigen3::Eigen",
      "PUBLIC Eigen3::Eigen ODE::ODE", "'shared' may not use 'ODE::ODE'"),
     ("shared declares clock and threads", "shared/CMakeLists.txt", "PUBLIC Eigen3::Eigen",

@@ -1,12 +1,13 @@
 // What a cell changes in a task, and what it may not.
 
-#include "planner/cell_fit.h"
+#include "planner/cell_fit/cell_fit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "executor/dry_run/plan_check.h"
+#include "planner/judge/plan_draft.h"
 #include "shared/base/error.h"
 #include "shared/motion/stiff_contact.h"
 #include "tests/planner/room_task.h"

@@ -3,7 +3,7 @@
 #include <map>
 #include <mutex>
 
-#include "planner/cell_fit.h"
+#include "planner/cell_fit/cell_fit.h"
 #include "shared/config/load.h"
 #include "shared/task/find_start.h"
 #include "tests/support/places.h"

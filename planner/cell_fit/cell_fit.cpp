@@ -1,4 +1,4 @@
-#include "planner/cell_fit.h"
+#include "planner/cell_fit/cell_fit.h"
 
 #include <algorithm>
 #include <cmath>

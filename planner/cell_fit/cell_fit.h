@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/judge/plan_draft.h"
+#include "planner/cell_fit/cell_assumptions.h"
 #include "shared/cell/cell.h"
 #include "shared/task/task.h"
 
