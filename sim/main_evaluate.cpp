@@ -113,8 +113,8 @@ int replay(const EvaluateLine& line, const Cell& cell, const sim::Evaluation& ev
     const sim::Candidate& candidate = evaluation.candidates[plan];
     const sim::Trial trial = evaluation.trial(plan, *line.only);
     std::printf(
-        "%s, run %zu: %.2f standard deviations off, seed %llu (tenon-sim makes the same world)\n",
-        candidate.file.c_str(), trial.number, trial.distance,
+        "%s, run %zu: %.2f standard deviations off%s, seed %llu (tenon-sim makes the same world)\n",
+        candidate.file.c_str(), trial.number, trial.distance, sim::tilt_text(trial).c_str(),
         static_cast<unsigned long long>(trial.seed));
     RecordReport black_box;
     const sim::TrialResult result =

@@ -110,7 +110,7 @@ void check_options(const EvaluateLine& line) {
 sim::Evaluation evaluation_of(const EvaluateLine& line, const Cell& cell) {
   sim::Evaluation evaluation;
   evaluation.task = load_task(line.task);
-  evaluation.cell = cell.name;
+  evaluation.cell = cell;
   if (!line.experiment.empty()) evaluation.ranges = load_experiment(line.experiment);
   if (!line.corner.empty()) {
     evaluation.ranges =

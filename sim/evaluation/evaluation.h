@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/cell/cell.h"
 #include "shared/experiment/world_ranges.h"
 #include "shared/plan/plan.h"
 #include "shared/task/task.h"
@@ -31,7 +32,7 @@ struct Candidate {
 
 struct Evaluation {
   Task task;
-  std::string cell;                   ///< name
+  Cell cell;                          ///< as its file has it
   std::optional<WorldRanges> ranges;  ///< of the experiment
   std::uint64_t seed = 0;
   std::vector<Candidate> candidates;
@@ -40,7 +41,8 @@ struct Evaluation {
   std::string replay;
 
   [[nodiscard]] Trial trial(std::size_t plan, std::size_t number) const {
-    return draw_trial(task, candidates[plan].start, ranges ? &*ranges : nullptr, seed, number);
+    return draw_trial(task, cell, candidates[plan].start, ranges ? &*ranges : nullptr, seed,
+                      number);
   }
 };
 

@@ -29,6 +29,12 @@ std::string rate_cell(const Rate& rate) {
          "] " + format("%zu of %zu", rate.successes, rate.count) + "</span></td>";
 }
 
+std::string proportion_cell(const Rate& rate) {
+  const Interval interval = rate.interval();
+  return "<td><b>" + percent(rate.value()) + " %</b> <span class='term'>[" + percent(interval.low) +
+         ", " + percent(interval.high) + "]</span></td>";
+}
+
 std::string number_cell(const std::string& text) { return "<td class='num'>" + text + "</td>"; }
 
 std::string legend() {
@@ -67,7 +73,8 @@ class Report {
     drawing::LivePage page;
     page.title = title + ": evaluation";
     page.heading = "<p class='kicker'>Evaluation</p><h1>" + title + " <span>on cell " +
-                   drawing::escaped(evaluation_.cell) + "</span></h1>\n" + opening() + badges();
+                   drawing::escaped(evaluation_.cell.name) + "</span></h1>\n" + opening() +
+                   badges();
     page.body = std::string("<style>") + kFigureStyle + "</style>\n" +
                 "<section class='stage' aria-label='Where the part went' data-part='stage'>"
                 "</section>\n<section data-part='forces' aria-labelledby='forces'><h2 id='forces'>"
@@ -116,6 +123,11 @@ class Report {
       html += "<th>W" + within_text(evaluation_.task, within.distance).substr(1) +
               format(" (%.2f %% of draws)</th>", 1e2 * within.mass);
     }
+    const bool tilts = std::any_of(summaries_.begin(), summaries_.end(),
+                                   [](const Summary& summary) { return summary.tilts; });
+    if (tilts) {
+      html += format("<th>And tilted &le; %.2f&deg;</th>", shown(task_.tilt_rad, 3));
+    }
     html += "<th class='num'>Stopped</th><th class='num'>Done but wrong</th></tr>\n";
     for (std::size_t i = 0; i < summaries_.size(); ++i) {
       const Candidate& candidate = evaluation_.candidates[i];
@@ -123,11 +135,8 @@ class Report {
       html += "<tr><td><a href='#plan" + std::to_string(i) + "'>" + name_of(candidate) +
               "</a></td><td>" + to_string(candidate.plan.method) + "</td>" +
               number_cell(std::to_string(candidate.plan.steps.size())) + rate_cell(summary.success);
-      for (const RateWithin& within : summary.within) {
-        html += "<td><b>" + percent(within.rate.value()) + " %</b> <span class='term'>[" +
-                percent(within.rate.interval().low) + ", " + percent(within.rate.interval().high) +
-                "]</span></td>";
-      }
+      for (const RateWithin& within : summary.within) html += proportion_cell(within.rate);
+      if (tilts) html += proportion_cell(summary.promised);
       html += number_cell(std::to_string(summary.stopped)) +
               number_cell(std::to_string(summary.done_but_wrong)) + "</tr>\n";
     }

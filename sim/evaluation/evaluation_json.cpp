@@ -46,6 +46,7 @@ Json json_of(const Summary& summary) {
     part.update(json_of(within.rate));
     json["within"].push_back(part);
   }
+  json["promised"] = json_of(summary.promised);
   json["endings"] = summary.endings;
   json["error"] = Json::array();
   for (const AxisError& error : summary.errors) json["error"].push_back(json_of(error));
@@ -114,7 +115,7 @@ Json json_of(const Evaluation& evaluation, const Candidate& candidate, bool with
 
 std::string text_of(const Evaluation& evaluation, bool with_runs) {
   Json json = {{"task", evaluation.task.name},
-               {"cell", evaluation.cell},
+               {"cell", evaluation.cell.name},
                {"experiment", evaluation.ranges ? Json(evaluation.ranges->name) : Json()},
                {"seed", evaluation.seed},
                {"goal_tolerance_m", evaluation.task.goal_tolerance_m},

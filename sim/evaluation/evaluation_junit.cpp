@@ -47,7 +47,7 @@ std::string properties_of(const Evaluation& evaluation, const Candidate& candida
   const Interval interval = success.interval();
   std::vector<std::pair<const char*, std::string>> properties = {
       {"task", evaluation.task.name},
-      {"cell", evaluation.cell},
+      {"cell", evaluation.cell.name},
       {"experiment", evaluation.ranges ? evaluation.ranges->name : ""},
       {"seed", std::to_string(evaluation.seed)},
       {"plan", candidate.file},
@@ -81,8 +81,8 @@ std::string verdict_of(const Evaluation& evaluation, const Candidate& candidate,
   const std::string element = no_run ? "error" : "failure";
   const std::string type = kind == TrialClass::kDoneButWrong ? to_string(kind) : result.ending;
   return "<" + element + attribute("message", result.reason) + attribute("type", type) + ">" +
-         in_xml(format("%.2f standard deviations off; made again by\n", run.trial.distance) +
-                replay_command(evaluation, candidate, run.trial.number)) +
+         in_xml(format("%.2f standard deviations off", run.trial.distance) + tilt_text(run.trial) +
+                "; made again by\n" + replay_command(evaluation, candidate, run.trial.number)) +
          "</" + element + ">";
 }
 

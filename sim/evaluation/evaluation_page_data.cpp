@@ -10,9 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "shared/base/shown.h"
+#include "shared/base/text.h"
 #include "shared/drawing/scene_json.h"
 #include "shared/drawing/step_words.h"
 #include "shared/task/spread.h"
+#include "sim/evaluation/summary.h"
 
 namespace tenon::sim {
 namespace {
@@ -52,6 +55,17 @@ std::size_t index_of(const std::vector<OutcomeKey>& outcomes, const TrialResult&
   return static_cast<std::size_t>(at - outcomes.begin());
 }
 
+/// What a plan promises to hold for: "3σ and 0.17°".
+std::string reach_words(const Evaluation& evaluation) {
+  const Task& task = evaluation.task;
+  const bool tilts =
+      std::any_of(evaluation.candidates.begin(), evaluation.candidates.end(),
+                  [&](const Candidate& candidate) { return summarise(task, candidate).tilts; });
+  return (task.errors == Distribution::kUniform ? "the bounds"
+                                                : format("%g\u03c3", task.particle_sigmas)) +
+         (tilts ? format(" and %.2f\u00b0", shown(task.tilt_rad, 3)) : "");
+}
+
 Json outcome_json(const OutcomeKey& key) {
   switch (key.first) {
     case TrialClass::kSucceeded:
@@ -71,7 +85,7 @@ Json run_json(const Task& task, const std::vector<OutcomeKey>& outcomes, const R
   }
   return {{"run", run.trial.number},
           {"outcome", index_of(outcomes, run.result)},
-          {"beyond", run.trial.distance > task.particle_sigmas},
+          {"beyond", !within_promise(run.trial, task)},
           {"path", std::move(path)}};
 }
 
@@ -104,7 +118,7 @@ Json recording_json(const Task& task, const std::vector<OutcomeKey>& outcomes, c
                     const Recording& recording) {
   Json json = {{"run", run.trial.number},
                {"outcome", index_of(outcomes, run.result)},
-               {"out", out_text(task, run.trial.distance)},
+               {"out", out_text(task, run.trial.distance) + tilt_text(run.trial)},
                {"reason", run.result.reason},
                {"step", run.result.step},
                {"step_outcome", run.result.outcome},
@@ -134,7 +148,7 @@ Json plan_json(const Task& task, const std::vector<OutcomeKey>& outcomes,
   std::size_t beyond = 0;
   for (const auto& [number, run] : candidate.runs) {
     ++counts[index_of(outcomes, run.result)];
-    beyond += run.trial.distance > task.particle_sigmas;
+    beyond += !within_promise(run.trial, task);
   }
   json["counts"] = counts;
   json["beyond"] = beyond;
@@ -167,8 +181,7 @@ std::string evaluation_page_json(const Evaluation& evaluation,
                {"coordinates", Json::array()},
                {"goal", Json::parse(drawing::pose_json(task.goal))},
                {"goal_tolerance_m", task.goal_tolerance_m},
-               {"reach_sigmas", task.particle_sigmas},
-               {"reach_is_bounds", task.errors == Distribution::kUniform},
+               {"reach", reach_words(evaluation)},
                {"outcomes", Json::array()},
                {"plans", Json::array()}};
   for (int axis = 0; axis < 6; ++axis) {

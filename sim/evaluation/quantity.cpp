@@ -20,8 +20,9 @@ struct Quantity {
 };
 
 // Named as in an experiment's file.
-constexpr std::array<Quantity, 18> kQuantities = {{
+constexpr std::array<Quantity, 19> kQuantities = {{
     {"distance", [](const Trial& t) { return t.distance; }},
+    {"tilt_rad", [](const Trial& t) { return t.tilt_rad; }},
     {"friction", [](const Trial& t) { return t.world.friction.value_or(kNotDrawn); }},
     {"contact_stiffness_Npm",
      [](const Trial& t) { return t.world.contact_stiffness_Npm.value_or(kNotDrawn); }},

@@ -35,6 +35,11 @@ std::string describe(const Task& task, const Candidate& candidate) {
     text += "  " + within_text(task, within.distance) +
             format(" (%.2f %% of all draws) ", 1e2 * within.mass) + text_of(within.rate) + "\n";
   }
+  if (s.tilts) {
+    text += format("  of these tilted by at most %.2f degrees, as the task has it: ",
+                   shown(task.tilt_rad, 3)) +
+            text_of(s.promised) + "\n";
+  }
   for (const AxisError& error : s.errors) {
     const int axis = error.axis;
     text +=
@@ -87,6 +92,11 @@ Summary summarise(const Task& task, const Candidate& candidate) {
       if (run.trial.distance > within.distance) continue;
       ++within.rate.count;
       within.rate.successes += succeeded;
+    }
+    summary.tilts = summary.tilts || run.trial.tilt_rad > 0.0;
+    if (within_promise(run.trial, task)) {
+      ++summary.promised.count;
+      summary.promised.successes += succeeded;
     }
     if (!result.error) continue;
     forces_N.push_back(result.contact_force_N_max);
@@ -201,10 +211,10 @@ std::string describe(const Evaluation& evaluation) {
     const std::vector<const Run*> failed = failures(candidate);
     for (std::size_t i = 0; i < std::min(failed.size(), kShown); ++i) {
       const TrialResult& result = failed[i]->result;
-      text += format("  run %zu at %.2f sigma, %s: ", failed[i]->trial.number,
-                     failed[i]->trial.distance, to_string(classify(result))) +
-              result.reason + "\n    " +
-              replay_command(evaluation, candidate, failed[i]->trial.number) + "\n";
+      text +=
+          format("  run %zu at %.2f sigma", failed[i]->trial.number, failed[i]->trial.distance) +
+          tilt_text(failed[i]->trial) + ", " + to_string(classify(result)) + ": " + result.reason +
+          "\n    " + replay_command(evaluation, candidate, failed[i]->trial.number) + "\n";
     }
     if (failed.size() > kShown) {
       text += format("  and %zu more (--json and --report have all)\n", failed.size() - kShown);

@@ -56,6 +56,8 @@ struct Summary {
   std::size_t stopped = 0;
   std::size_t done_but_wrong = 0;
   std::vector<RateWithin> within;              ///< 2, 3 and c_p, ascending; or the bounds
+  Rate promised;                               ///< of the last of these, see within_promise()
+  bool tilts = false;                          ///< some world is tilted
   std::map<std::string, std::size_t> endings;  ///< of all runs, by name
   std::vector<AxisError> errors;               ///< of the search coordinates
   Moments error_norm_m;                        ///< of the runs that were done

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/cell/cell.h"
 #include "shared/experiment/world_ranges.h"
 #include "shared/task/task.h"
 #include "sim/cell/virtual_arm/world_draw.h"
@@ -21,6 +22,7 @@ struct Trial {
   std::uint64_t seed = 0;
   Vector6 offset = Vector6::Zero();  ///< of the environment, in task axes, m and rad
   double distance = 0.0;             ///< of the offset, Mahalanobis: in standard deviations
+  double tilt_rad = 0.0;             ///< of the world, see tilt_of()
   WorldDraw world;
 };
 
@@ -64,8 +66,18 @@ struct Run {
   TrialResult result;
 };
 
+/// What calibration has turned about axes that are no coordinates, of the environment and of the
+/// part in the hand together: what the task's tilt_rad bounds. Of what moves go along, nothing.
+[[nodiscard]] double tilt_of(const WorldDraw& world, const Task& task, const Cell& cell);
+
+/// Whether a plan for the task promises to hold there: start and tilt are within the task's bounds.
+[[nodiscard]] bool within_promise(const Trial& trial, const Task& task);
+
+/// ", tilted by 0.26 degrees"; empty where the world is not tilted.
+[[nodiscard]] std::string tilt_text(const Trial& trial);
+
 /// @param ranges null: the offset alone is drawn
-[[nodiscard]] Trial draw_trial(const Task& task, const Start& start, const WorldRanges* ranges,
-                               std::uint64_t seed, std::size_t number);
+[[nodiscard]] Trial draw_trial(const Task& task, const Cell& cell, const Start& start,
+                               const WorldRanges* ranges, std::uint64_t seed, std::size_t number);
 
 }  // namespace tenon::sim

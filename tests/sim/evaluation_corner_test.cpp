@@ -23,7 +23,7 @@ Task task() {
 
 WorldDraw world_at(const std::string& corner, const WorldRanges& ranges = {}) {
   const WorldRanges there = at_corner(ranges, corner, task());
-  return draw_trial(task(), task().starts.front(), &there, 1, 2).world;
+  return draw_trial(task(), Cell{}, task().starts.front(), &there, 1, 2).world;
 }
 
 TEST(EvaluationCorner, EveryRunHasTheFrictionAndThePartOfTheCorner) {
@@ -42,7 +42,7 @@ TEST(EvaluationCorner, WhatElseAnExperimentDrawsStaysAsItWas) {
   ranges.name = "worn";
   ranges.friction = Spread{.low = 0.2, .high = 0.4};
   ranges.servo_stiffness_factor = {.low = 0.5, .high = 2.0};
-  const WorldDraw drawn = draw_trial(task(), task().starts.front(), &ranges, 1, 2).world;
+  const WorldDraw drawn = draw_trial(task(), Cell{}, task().starts.front(), &ranges, 1, 2).world;
   const WorldDraw cornered = world_at("high,drawn", ranges);
   EXPECT_EQ(cornered.servo_stiffness_factor, drawn.servo_stiffness_factor);
   EXPECT_NE(cornered.friction, drawn.friction);

@@ -38,7 +38,7 @@ Evaluation small_evaluation() {
   Evaluation evaluation;
   evaluation.task = wall_task();
   evaluation.task.name = "a & b";
-  evaluation.cell = "test";
+  evaluation.cell.name = "test";
   evaluation.seed = 3;
   evaluation.replay = "tenon-evaluate --cell C --task 'T' --seed 3";
   Candidate candidate;
@@ -75,6 +75,31 @@ TEST(EvaluationSummary, CountsEveryRunOnce) {
   EXPECT_EQ(summary.within[1].rate.count, 4U);
   EXPECT_EQ(summary.within[1].rate.successes, 3U);
   EXPECT_NEAR(summary.within[1].mass, 0.988891, 1e-6);
+}
+
+TEST(EvaluationSummary, AFailureInAWorldThatIsTiltedTooFarBreaksNoPromise) {
+  Evaluation evaluation = small_evaluation();
+  evaluation.task.particle_sigmas = 3.0;
+  evaluation.task.tilt_rad = 3e-3;
+  EXPECT_EQ(summarise(evaluation.task, evaluation.candidates[0]).promised.count, 4U);
+  EXPECT_EQ(describe(evaluation).find("tilted"), std::string::npos);  // no world is
+
+  evaluation.candidates[0].runs.at(4).trial.tilt_rad = 4e-3;  // done but wrong
+  evaluation.candidates[0].runs.at(1).trial.tilt_rad = 2e-3;
+  const Summary summary = summarise(evaluation.task, evaluation.candidates[0]);
+  EXPECT_EQ(summary.within.back().rate.count, 4U);
+  EXPECT_EQ(summary.promised.count, 3U);
+  EXPECT_EQ(summary.promised.successes, 3U);
+  EXPECT_EQ(summary.done_but_wrong, 1U);
+  const std::string text = describe(evaluation);
+  EXPECT_NE(text.find("of these tilted by at most 0.17 degrees, as the task has it: 3 of 3 ="),
+            std::string::npos);
+  EXPECT_NE(text.find("run 4 at 2.50 sigma, tilted by 0.23 degrees, done_but_wrong"),
+            std::string::npos);
+  const auto json = nlohmann::json::parse(evaluation_json(evaluation));
+  EXPECT_EQ(json["plans"][0]["summary"]["promised"]["runs"], 3);
+  EXPECT_NE(evaluation_html(evaluation).find("And tilted &le; 0.17&deg;"),
+            std::string::npos);
 }
 
 TEST(EvaluationSummary, ErrorsAreThoseOfRunsThatWereDone) {

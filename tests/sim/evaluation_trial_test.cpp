@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -31,21 +33,21 @@ TEST(EvaluationTrial, ARunsDrawIsThatOfTenonSimWithItsSeed) {
   ranges.clearance_m.sigma = 1e-4;
   std::set<std::uint64_t> seeds;
   for (std::size_t number = 0; number < 1000; ++number) {
-    const Trial trial = draw_trial(task, start, &ranges, 7, number);
+    const Trial trial = draw_trial(task, Cell{}, start, &ranges, 7, number);
     EXPECT_LT(trial.seed, std::uint64_t{1} << 53);
     EXPECT_EQ(trial.offset, draw_offset(task, start, trial.seed));
     EXPECT_EQ(trial.world.clearance_m, draw_world(ranges, task, trial.seed).clearance_m);
     seeds.insert(trial.seed);
   }
   EXPECT_EQ(seeds.size(), 1000U);
-  EXPECT_NE(draw_trial(task, start, nullptr, 8, 0).seed,
-            draw_trial(task, start, nullptr, 7, 0).seed);
+  EXPECT_NE(draw_trial(task, Cell{}, start, nullptr, 8, 0).seed,
+            draw_trial(task, Cell{}, start, nullptr, 7, 0).seed);
 }
 
 TEST(EvaluationTrial, EveryPlanMeetsTheSameNormalDraws) {
   const Task task = wall_task();
-  const Trial narrow = draw_trial(task, start_with(0.01, 0.02), nullptr, 7, 5);
-  const Trial wide = draw_trial(task, start_with(0.03, 0.04), nullptr, 7, 5);
+  const Trial narrow = draw_trial(task, Cell{}, start_with(0.01, 0.02), nullptr, 7, 5);
+  const Trial wide = draw_trial(task, Cell{}, start_with(0.03, 0.04), nullptr, 7, 5);
   EXPECT_DOUBLE_EQ(wide.offset.x(), 3.0 * narrow.offset.x());
   EXPECT_DOUBLE_EQ(wide.offset.y(), 2.0 * narrow.offset.y());
   EXPECT_DOUBLE_EQ(wide.distance, narrow.distance);
@@ -57,10 +59,44 @@ TEST(EvaluationTrial, DistancesAreDistributedAsThoseOfAPlaneNormal) {
   int within_two = 0;
   constexpr int kDraws = 20'000;
   for (std::size_t number = 0; number < kDraws; ++number) {
-    within_two += draw_trial(task, start, nullptr, 3, number).distance <= 2.0;
+    within_two += draw_trial(task, Cell{}, start, nullptr, 3, number).distance <= 2.0;
   }
   // 1 - exp(-2), four standard deviations of the count
   EXPECT_NEAR(within_two / static_cast<double>(kDraws), 0.8646647, 4.0 * 0.00242);
+}
+
+TEST(EvaluationTrial, ATiltIsOfAxesThatAreNoCoordinatesOfTheTask) {
+  Task task = wall_task();
+  task.coordinates = 0b001011;  // x, y, rx
+  Cell cell;
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3::UnitZ()));
+  cell.X_BT.orientation = quarter;  // base y is task x, base x is task -y
+  WorldDraw world;
+  world.task_in_base_error << 0.1, 0.1, 0.1, 3e-3, 5e-3, 0.0;
+  EXPECT_NEAR(tilt_of(world, task, cell), 3e-3, 1e-12);
+  world.tool_in_flange_error << 0.1, 0.1, 0.1, 9e-3, 0.0, 4e-3;  // flange x is task x
+  EXPECT_NEAR(tilt_of(world, task, cell), 5e-3, 1e-12);
+  cell.X_FP.orientation = quarter;  // flange x is tool -y
+  EXPECT_NEAR(tilt_of(world, task, cell), std::sqrt(9e-6 + 81e-6 + 16e-6), 1e-12);
+  task.goal.orientation = quarter;  // and that is task x
+  EXPECT_NEAR(tilt_of(world, task, cell), 5e-3, 1e-12);
+}
+
+TEST(EvaluationTrial, APlanPromisesNothingBeyondItsTasksReachOrTilt) {
+  Task task = wall_task();
+  task.particle_sigmas = 3.0;
+  task.tilt_rad = 3e-3;
+  Trial trial;
+  trial.distance = 2.9;
+  trial.tilt_rad = 2.9e-3;
+  EXPECT_TRUE(within_promise(trial, task));
+  EXPECT_EQ(tilt_text(trial), ", tilted by 0.17 degrees");
+  trial.tilt_rad = 3.1e-3;
+  EXPECT_FALSE(within_promise(trial, task));
+  trial.tilt_rad = 0.0;
+  EXPECT_EQ(tilt_text(trial), "");
+  trial.distance = 3.1;
+  EXPECT_FALSE(within_promise(trial, task));
 }
 
 TEST(EvaluationTrial, ShardsShareTheRunsOut) {

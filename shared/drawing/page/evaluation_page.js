@@ -90,9 +90,8 @@ class EvaluationPage {
     this.outcomeFilters = data.outcomes.map((outcome, i) =>
       filter(shown.outcomes, i, outcome.class, outcome.name),
     );
-    const reach = data.reach_is_bounds ? "the bounds" : data.reach_sigmas + "σ";
-    this.withinFilter = filter(shown, "within", null, "within " + reach);
-    this.beyondFilter = filter(shown, "beyond", null, "beyond reach");
+    this.withinFilter = filter(shown, "within", null, "within " + data.reach);
+    this.beyondFilter = filter(shown, "beyond", null, "beyond");
     this.shownText = element("span", { class: "note", "aria-live": "polite" });
     this.filters.append(this.shownText);
   }

@@ -49,8 +49,10 @@ def row(task, arguments):
     )
     summary = known["summary"]
     within = summary["within"][-1]
+    promised = summary["promised"]
     print(
         f"{took}  {within['succeeded']:3d} of {within['runs']:3d} within {within['distance']:g} sigma,"
+        f" {promised['succeeded']:3d} of {promised['runs']:3d} of these within the task's tilt,"
         f" {summary['success']['succeeded']:3d} of {summary['success']['runs']:3d} in all,"
         f" {summary['done_but_wrong']} done but wrong",
         flush=True,
