@@ -67,6 +67,10 @@ def look_at(browser, file, fragment, webgl, failures, pictures, served=None):
             failures.check(unnamed == 0, f"{name}: {unnamed} elements without a name")
             if pictures:
                 browser.picture(pictures / f"{name}.png")
+            cut = browser.evaluate(
+                "[...document.querySelectorAll('.now h2, .words p')].filter(e => { e.append(' ' + 'name'.repeat(20));"
+                " return e.scrollWidth > e.clientWidth; }).map(e => e.textContent)")
+            failures.check(not cut, f"{name}: a long name is cut off in {cut}")
 
 
 def opening_s(browser, file):
