@@ -124,6 +124,12 @@ stage_lint() {
   return "$failed"
 }
 
+# How many cases ran where one of ctest's tests is many of them.
+cases_in_parts() {
+  awk '/^[0-9]+\/[0-9]+ Testing: .*\.part_/ { part = 1 } /^\[  PASSED  \]/ && part { cases += $4; part = 0 }
+       END { if (cases) print "test cases in parts: " cases " passed" }' "$1"
+}
+
 # run_tests PRESET; the release's tests carry the label "full".
 run_tests() {
   local preset=$1 which=(--label-exclude '^full$' --no-tests=ignore) without=nothing list area files
@@ -136,8 +142,10 @@ run_tests() {
     if passed_before "$preset.$area" "${bytes[$area]}"; then without+="|$area"; fi
   done
   local failed=build/$preset/Testing/Temporary/LastTestsFailed.log result=0
-  rm -f "$failed"
+  local log=${failed%/*}/LastTest.log
+  rm -f "$failed" "$log"
   ctest --preset "$preset" --parallel "$jobs" "${which[@]}" --exclude-regex "^($without)\." || result=$?
+  [[ ! -e $log ]] || cases_in_parts "$log"
   # A run that was broken off has no list of what failed, and says nothing of any area.
   ((result == 0)) || [[ -e $failed ]] || return "$result"
   for area in "${!bytes[@]}"; do

@@ -3,7 +3,8 @@
 #   tenon_library(NAME [EXCEPT FOLDER...] [PUBLIC DEP...] [PRIVATE DEP...])
 #   tenon_main(NAME SOURCE [DEP...])
 #   tenon_lcm_types(NAME)
-#   tenon_test(AREA [SERIAL|UNLISTED] [PLANS] [EXECUTABLES MAIN...] [FULL_EXECUTABLES MAIN...] [FULL FILTER...])
+#   tenon_test(AREA [SERIAL|UNLISTED] [SHORT] [PLANS] [EXECUTABLES MAIN...] [FULL_EXECUTABLES MAIN...]
+#              [FULL FILTER...])
 #   tenon_area_runs(AREA [PROGRAMS TARGET...] [FILES FILE...])
 #   tenon_test_program(NAME [DEP...])     for benchmarks and fuzzers
 #   tenon_plan(NAME TASK [START NAME] [CELL FILE] [FULL])
@@ -263,13 +264,15 @@ endfunction()
 # AREA.Suite.Name under the label AREA. Does nothing where TENON_TEST_AREAS names other areas only.
 # SERIAL: its tests run one at a time, because they run in real time.
 # UNLISTED: built but not registered, because its tests need another machine (tests/guest).
+# SHORT: hundreds of tests that take no time. With sanitizers, where every process takes a quarter of a second to
+# begin, they run in a few processes: AREA.part_0, ...
 # EXECUTABLES: what its tests run, and is therefore built before it.
 # FULL_EXECUTABLES: what only those with the label full run besides.
 # PLANS: its tests read plans of tests/plans, which are therefore made before it is linked.
 # FULL: GoogleTest filters of the tests that only a release needs. They get the label full in place of
 # the area's.
 function(tenon_test area)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL;UNLISTED;PLANS" "" "EXECUTABLES;FULL_EXECUTABLES;FULL")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL;UNLISTED;SHORT;PLANS" "" "EXECUTABLES;FULL_EXECUTABLES;FULL")
   tenon_has_area(${area} wanted)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${area}/*.cpp)
   if(NOT wanted OR NOT sources)
@@ -289,6 +292,10 @@ function(tenon_test area)
     return()
   endif()
   tenon_area_runs(${area} PROGRAMS tests_${area} ${arg_EXECUTABLES} FILES ${plans})
+  if(arg_SHORT AND TENON_SANITIZERS)
+    tenon_test_in_parts(${area})
+    return()
+  endif()
   set(common TEST_PREFIX "${area}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
   if(arg_FULL)
     list(JOIN arg_FULL ":" full)
@@ -300,6 +307,17 @@ function(tenon_test area)
   gtest_discover_tests(tests_${area} ${common} ${rest}
     PROPERTIES LABELS ${area} TIMEOUT 600 RUN_SERIAL ${arg_SERIAL}
       ENVIRONMENT TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/threads/tsan.supp)
+endfunction()
+
+# All tests of tests_AREA in a few processes.
+function(tenon_test_in_parts area)
+  set(parts 4)
+  math(EXPR last "${parts} - 1")
+  foreach(part RANGE ${last})
+    add_test(NAME ${area}.part_${part} COMMAND tests_${area} --gtest_brief=1)
+    set_tests_properties(${area}.part_${part} PROPERTIES LABELS ${area} TIMEOUT 600
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part}")
+  endforeach()
 endfunction()
 
 # All built files that the tests of an area run or read, for test.sh, which leaves out an area that has passed
