@@ -230,16 +230,16 @@ class Planning {
         return follow_guide(guide, task_, searched_->start(), start_.pose, *succ, pool_.front(),
                             &left);
       });
-      progress_.tell(way ? guide_followed(guide, way->size()) : guide_left(guide, left));
+      progress_.tell(way ? guide_followed(guide, way->moves.size()) : guide_left(guide, left));
       if (!way) return false;
-      Judgement judgement = judge_.judge(*way, PathJudge::Misses::kAll);
+      Judgement judgement = judge_.judge(way->moves, PathJudge::Misses::kAll, way->plain);
       if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
         report_.guide = guide_text(guide);
-        keep(std::move(*judged), *way, SearchResult{});
+        keep(std::move(*judged), way->moves, SearchResult{});
         return true;
       }
       const auto& refutation = std::get<Refutation>(judgement);
-      tilt_.refute(refutation.by_tilt, way->size(), moves_simulated());
+      tilt_.refute(refutation.by_tilt, way->moves.size(), moves_simulated());
       const std::size_t fresh = searched_->add_starts(refutation);
       const bool lesser = options_.search_physics || search_step_us(task_) > task_.rollout_step_us;
       const bool truer = fresh == 0 && succ != &true_succ_ && lesser;

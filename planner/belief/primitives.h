@@ -13,6 +13,7 @@ namespace tenon::planner {
 struct Primitive {
   int label = 0;  ///< 2a: + along axis a, 2a + 1: -; kDirectLabel + i: straight to goal attractor i
   Vector6 displacement = Vector6::Zero();
+  bool plain = false;  ///< what it meets is held as it was met, see MoveParameters::aligns
 };
 
 inline constexpr int kDirectLabel = 12;

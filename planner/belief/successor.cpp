@@ -17,19 +17,21 @@ SuccessorEngine::SuccessorEngine(RolloutPool& pool, const MoveParameters& move,
                                  std::int64_t step_us)
     : pool_(pool), move_(move), step_us_(step_us) {}
 
-SuccessorEngine::Key SuccessorEngine::key_of(const Particle& particle,
-                                             const Vector6& displacement) {
+SuccessorEngine::Key SuccessorEngine::key_of(const Particle& particle, const Vector6& displacement,
+                                             bool plain) {
   Key key;
   append_cell(particle, kCoincident_m, kCoincident_rad, key);
   for (int axis = 0; axis < 6; ++axis) {
     key.push_back(std::bit_cast<std::int64_t>(displacement[axis]));
   }
+  key.push_back(plain ? 1 : 0);
   return key;
 }
 
 SuccessorEngine::End SuccessorEngine::simulate(Rollout& rollout, const Job& job) const {
   MoveParameters move = move_;
   move.displacement = job.displacement;
+  move.aligns = move.aligns && !job.plain;
   const RolloutResult result = rollout.simulate(job.particle, move, step_us_);
   if (!result.valid || result.move.outcome == Outcome::kTimeout) return std::nullopt;
   const Particle end{result.move.pose, result.move.signature, job.particle.physics,
@@ -39,7 +41,7 @@ SuccessorEngine::End SuccessorEngine::simulate(Rollout& rollout, const Job& job)
 }
 
 void SuccessorEngine::refuse(const Particle& particle, const Vector6& displacement) {
-  memo_[key_of(particle, displacement)].reset();
+  memo_[key_of(particle, displacement, false)].reset();
 }
 
 std::vector<const SuccessorEngine::End*> SuccessorEngine::ends_of(
@@ -48,9 +50,10 @@ std::vector<const SuccessorEngine::End*> SuccessorEngine::ends_of(
   std::vector<const End*> ends;  // nodes of a map stay where they are
   for (const Primitive& primitive : primitives) {
     for (const Particle& particle : belief.particles) {
-      const auto [entry, fresh] = memo_.try_emplace(key_of(particle, primitive.displacement));
+      const auto& [label, displacement, plain] = primitive;
+      const auto [entry, fresh] = memo_.try_emplace(key_of(particle, displacement, plain));
       ends.push_back(&entry->second);
-      if (fresh) jobs.push_back({particle, primitive.displacement, &entry->second});
+      if (fresh) jobs.push_back({particle, displacement, plain, &entry->second});
     }
   }
   pool_.run(jobs.size(),

@@ -39,8 +39,8 @@ class SuccessorEngine {
   [[nodiscard]] std::vector<std::optional<Belief>> successors(
       const Belief& belief, std::span<const Primitive> primitives);
 
-  /// The move does not exist any more, as if its rollout had failed: a finer simulation contradicts
-  /// it.
+  /// The move, none that is plain, does not exist any more, as if its rollout had failed: a finer
+  /// simulation contradicts it.
   void refuse(const Particle& particle, const Vector6& displacement);
 
   [[nodiscard]] const Counters& counters() const { return counters_; }
@@ -55,10 +55,12 @@ class SuccessorEngine {
   struct Job {
     Particle particle;
     Vector6 displacement;
+    bool plain = false;
     End* end = nullptr;
   };
 
-  [[nodiscard]] static Key key_of(const Particle& particle, const Vector6& displacement);
+  [[nodiscard]] static Key key_of(const Particle& particle, const Vector6& displacement,
+                                  bool plain);
   [[nodiscard]] End simulate(Rollout& rollout, const Job& job) const;
 
   /// One for each primitive, each the end of every particle; in that order.

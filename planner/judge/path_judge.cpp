@@ -42,10 +42,11 @@ PathJudge::PathJudge(const Task& task, const Start& start, const Parameters& par
       pool_(pool),
       now_s_(std::move(now_s)) {}
 
-Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses) {
+Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses,
+                           std::span<const std::size_t> plain) {
   missed_.clear();
   misses_ = misses;
-  Plan slow = draft_plan(task_, start_, parameters_.assumptions, displacements);
+  Plan slow = draft_plan(task_, start_, parameters_.assumptions, displacements, plain);
   slow.method = parameters_.method;
   if (slow.method == PlanMethod::kMha) {
     const std::vector<Draw> looked =

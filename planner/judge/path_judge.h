@@ -62,9 +62,11 @@ class PathJudge {
   };
 
   /// @param displacements of the path's steps, values that a plan file can hold
+  /// @param plain those of the steps whose touches are plain
   /// @throws InputError where they cannot be represented as a plan
   [[nodiscard]] Judgement judge(std::span<const Vector6> displacements,
-                                Misses misses = Misses::kFirst);
+                                Misses misses = Misses::kFirst,
+                                std::span<const std::size_t> plain = {});
 
   /// So far.
   [[nodiscard]] const JudgeEffort& effort() const { return effort_; }

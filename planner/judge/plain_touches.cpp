@@ -39,14 +39,14 @@ bool touches(std::span<const Chain> chains, std::size_t step) {
 std::optional<Plan> with_plain_touches(const Plan& draft, std::span<const Chain> chains) {
   if (draft.compliance.compliant_axes >> 3 == 0) return std::nullopt;
   Plan plan = draft;
-  ParameterSet plain = plan.parameter_sets.front();
-  plain.aligns = false;
+  bool changed = false;
   for (std::size_t step = 0; step < plan.steps.size(); ++step) {
     if (!touches(chains, step) || settles_rotation(chains, plan, step)) continue;
-    plan.steps[step].parameter_set = 1;
-    if (plan.parameter_sets.size() == 1) plan.parameter_sets.push_back(plain);
+    if (plan.steps[step].parameter_set != 0) continue;
+    make_plain(plan, step);
+    changed = true;
   }
-  if (plan.parameter_sets.size() == 1) return std::nullopt;
+  if (!changed) return std::nullopt;
   return through_bytes(plan);
 }
 

@@ -24,7 +24,7 @@ Plan through_bytes(const Plan& plan) {
 }
 
 Plan draft_plan(const Task& task, const Start& start, const CellAssumptions& assumptions,
-                std::span<const Vector6> displacements) {
+                std::span<const Vector6> displacements, std::span<const std::size_t> plain) {
   if (displacements.size() > kMaxSteps) {
     throw InputError("plan: " + std::to_string(displacements.size()) + " steps, a plan holds " +
                      std::to_string(kMaxSteps));
@@ -55,7 +55,16 @@ Plan draft_plan(const Task& task, const Start& start, const CellAssumptions& ass
     }
     plan.steps.push_back(step);
   }
+  for (const std::size_t step : plain) make_plain(plan, step);
   return through_bytes(plan);
+}
+
+void make_plain(Plan& plan, std::size_t step) {
+  if (plan.parameter_sets.size() == 1) {
+    plan.parameter_sets.push_back(plan.parameter_sets.front());
+    plan.parameter_sets.back().aligns = false;
+  }
+  plan.steps[step].parameter_set = 1;
 }
 
 }  // namespace tenon::planner

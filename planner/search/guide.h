@@ -24,6 +24,9 @@ struct ContactAttractor {
   CoordinateMask after = 0;  ///< what contacts before it must have settled
   bool in_legs = true;       ///< some straight legs lead from the start to there
   CoordinateMask flat = 0;   ///< rotations that the push settles besides
+  /// Held as it is met, see Primitive, by who follows the guide to the letter: pressed, the part
+  /// slides or rolls off. The search's own moves press.
+  bool plain = false;
 };
 
 /// Where an inadmissible heuristic leads: to contacts in turn, then past goal attractors, of which

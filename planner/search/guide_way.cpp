@@ -55,7 +55,7 @@ class Walk {
     const double step = contact.axis < 3 ? task_.step_m : task_.step_rad;
     const double way = std::max(0.0, beyond) + from.spread[contact.axis] + step;
     if (way > longest_move(task_, contact.axis)) return stuck("the push would last too long");
-    return move(contact.sign * way * Vector6::Unit(contact.axis));
+    return move(contact.sign * way * Vector6::Unit(contact.axis), contact.plain);
   }
 
   /// Over the goal, then along one axis into it.
@@ -100,17 +100,17 @@ class Walk {
   /// For a second try.
   struct Mark {
     Belief belief;
-    std::vector<Vector6> moves;
+    GuideWay way;
     std::vector<Pose> waypoints;
   };
-  [[nodiscard]] Mark mark() const { return {belief_, moves_, waypoints_}; }
+  [[nodiscard]] Mark mark() const { return {belief_, way_, waypoints_}; }
   void return_to(const Mark& mark) {
     belief_ = mark.belief;
-    moves_ = mark.moves;
+    way_ = mark.way;
     waypoints_ = mark.waypoints;
   }
 
-  [[nodiscard]] std::vector<Vector6> take() { return std::move(moves_); }
+  [[nodiscard]] GuideWay take() { return std::move(way_); }
 
   /// Of what failed last.
   [[nodiscard]] const std::string& why() const { return why_; }
@@ -156,17 +156,18 @@ class Walk {
 
   bool move_to(const Pose& place) { return move(aimed(place, belief_, task_)); }
 
-  bool move(Vector6 way) {
+  bool move(Vector6 way, bool plain = false) {
     for (int axis = 0; axis < 6; ++axis) {
       const bool told = has(moved_axes(task_), axis) && std::abs(way[axis]) > kNothing;
       if (!told) way[axis] = 0.0;
     }
-    const Primitive primitive{kLabel, stored(way)};
+    const Primitive primitive{kLabel, stored(way), plain};
     if (primitive.displacement.isZero()) return true;
     auto ends = succ_.successors(belief_, {&primitive, 1});
     if (!ends.front()) return stuck("a start fails in a move, or rests at an edge");
     belief_ = std::move(*ends.front());
-    moves_.push_back(primitive.displacement);
+    if (plain) way_.plain.push_back(way_.moves.size());
+    way_.moves.push_back(primitive.displacement);
     return true;
   }
 
@@ -176,7 +177,7 @@ class Walk {
   SuccessorEngine& succ_;
   FreeLegs legs_;
   Belief belief_;
-  std::vector<Vector6> moves_;
+  GuideWay way_;
   std::vector<Pose> waypoints_;  ///< of the mean, all free: where legs have begun and ended
   std::string why_;
 };
@@ -205,10 +206,9 @@ bool touched_again(Walk& walk, const Guide& guide) {
 
 }  // namespace
 
-std::optional<std::vector<Vector6>> follow_guide(const Guide& guide, const Task& task,
-                                                 const Belief& start, const Pose& clear,
-                                                 SuccessorEngine& succ, Rollout& rollout,
-                                                 std::string* left) {
+std::optional<GuideWay> follow_guide(const Guide& guide, const Task& task, const Belief& start,
+                                     const Pose& clear, SuccessorEngine& succ, Rollout& rollout,
+                                     std::string* left) {
   Walk walk(task, start, clear, succ, rollout);
   const bool turned = walk.turned();
   const auto leave = [&](const std::string& where) {

@@ -133,7 +133,7 @@ struct FollowedRoom {
         start(cross_polytope(task, task.starts.front())),
         succ(pool, search_move(task, task.starts.front(), {}), task.rollout_step_us) {}
 
-  [[nodiscard]] std::optional<std::vector<Vector6>> follow(const Guide& guide) {
+  [[nodiscard]] std::optional<GuideWay> follow(const Guide& guide) {
     return follow_guide(guide, task, start, task.starts.front().pose, succ, pool.front(), &left);
   }
 
@@ -164,7 +164,7 @@ TEST(FollowGuide, TouchesWhatItNamesAndEndsAtTheGoal) {
   // Every particle by itself, outside of what was tested.
   for (Particle particle : room.start.particles) {
     int contacts = 0;
-    for (const Vector6& displacement : *way) {
+    for (const Vector6& displacement : way->moves) {
       MoveParameters move;
       move.displacement = displacement;
       const RolloutResult result = room.rollout.simulate(particle, move, 2000, nullptr);
@@ -228,7 +228,7 @@ TEST(FollowGuide, MakesNoTouchAgainThatTellsNothingNew) {
   for (Particle particle : cross_polytope(task, from).particles) {
     int touches = 0;
     int floor = 0;
-    for (const Vector6& displacement : *way) {
+    for (const Vector6& displacement : way->moves) {
       MoveParameters move;
       move.displacement = displacement;
       const RolloutResult result = rollout.simulate(particle, move, 2000, nullptr);

@@ -45,6 +45,19 @@ TEST_F(Room, ARolloutIsSimulatedOnce) {
   EXPECT_EQ(succ.counters().memo_hits, 16U);
 }
 
+TEST_F(Room, APlainTouchIsAnotherMoveThanAPress) {
+  const Primitive press = step_primitives(task).front();
+  Primitive plain = press;
+  plain.plain = true;
+  (void)succ.successors(start, std::array{press, plain});
+  EXPECT_EQ(succ.counters().rollouts, 8U);
+  // What refutes a press says nothing of the plain one.
+  succ.refuse(start.particles.front(), press.displacement);
+  const auto ends = succ.successors(start, std::array{press, plain});
+  EXPECT_FALSE(ends[0].has_value());
+  EXPECT_TRUE(ends[1].has_value());
+}
+
 TEST_F(Room, CoincidentParticlesAreSimulatedOnceAndOthersAreNot) {
   Particle one = start.particles.front();
   Particle other = one;

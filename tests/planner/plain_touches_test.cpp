@@ -60,6 +60,17 @@ TEST_F(PlainTouches, NothingChangesWhereEveryTouchSettlesARotationOrNoneYields) 
   EXPECT_FALSE(with_plain_touches(draft(), askew).has_value());
 }
 
+TEST_F(PlainTouches, AreInADraftWhatTheWaySays) {
+  const std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.05, Vector6::Unit(1) * 0.05};
+  const std::vector<std::size_t> plain = {1};
+  const Plan as_told = draft_plan(task, task.starts.front(), {}, displacements, plain);
+  EXPECT_TRUE(move_parameters(as_told, 0).aligns);
+  EXPECT_FALSE(move_parameters(as_told, 1).aligns);
+  // They stay so, whatever the other touches do.
+  const std::vector<Chain> chains = {turned(0.05, 0.001, 0.002), turned(-0.04, 0.0, 0.001)};
+  EXPECT_FALSE(with_plain_touches(as_told, chains).has_value());
+}
+
 TEST_F(PlainTouches, AMoveThatTouchesNothingStaysAsItIs) {
   std::vector<Chain> chains = {turned(0.05, -0.05, -0.05), turned(-0.05, 0.05, 0.05)};
   for (Chain& chain : chains) chain.moves[1].outcome = Outcome::kReached;

@@ -157,7 +157,7 @@ TEST(TouchTurns, FollowedToTheLetterLeadToTheGoal) {
   ASSERT_TRUE(way);
   // Every particle by itself, outside of what was tested.
   for (Particle particle : start.particles) {
-    for (const Vector6& displacement : *way) {
+    for (const Vector6& displacement : way->moves) {
       MoveParameters move;
       move.displacement = displacement;
       const RolloutResult result = turns.pool.front().simulate(particle, move, 2000, nullptr);
