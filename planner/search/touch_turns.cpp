@@ -1,5 +1,6 @@
 #include "planner/search/touch_turns.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -61,8 +62,10 @@ TouchTurns::TouchTurns(const Task& task, const Belief& start, const Pose& clear,
   const double enough_m = std::sqrt(task.goal_uncertainty_m2 / std::max(1, coordinates));
   const Metric metric = metric_of(task);
   // Without bound along free axes.
-  for (int axis = 0; axis < 6; ++axis)
-    enough_[axis] = enough_m / std::sqrt(metric.variance_weight(axis));
+  for (int axis = 0; axis < 6; ++axis) {
+    if (has(task.coordinates, axis))
+      enough_[axis] = enough_m / std::sqrt(metric.variance_weight(axis));
+  }
 }
 
 /// What a touch tells of a place is worth as much as the angles leave of it there.
@@ -70,32 +73,29 @@ Belief TouchTurns::over_goal(const Belief& belief) const {
   return moved_to(task_.goal, belief, task_);
 }
 
-/// Along each axis about the mean, at the goal.
-Vector6 TouchTurns::deviation(const Belief& belief) const {
+/// About the mean, at the goal; of each axis as many times what is enough there.
+TouchTurns::Matrix6 TouchTurns::covariance(const Belief& belief) const {
   const Belief there = over_goal(belief);
   const Pose about = mean_pose(there);
-  Vector6 squares = Vector6::Zero();
+  Matrix6 sum = Matrix6::Zero();
   for (const Particle& particle : there.particles) {
-    squares += displacement_between(about, particle.tool()).cwiseAbs2();
+    const Vector6 off = displacement_between(about, particle.tool()).cwiseQuotient(enough_);
+    sum += off * off.transpose();
   }
-  return (squares / static_cast<double>(belief.particles.size())).cwiseSqrt();
+  return sum / static_cast<double>(there.particles.size());
 }
 
+/// Along the principal axes, as what is off together counts once: a touch of a part that is turned
+/// anyhow tells how far it is off there, although at the goal, farther away, every coordinate by
+/// itself is as uncertain as before.
 double TouchTurns::left_of(const Belief& belief) const {
-  const Vector6 deviations = deviation(belief);
-  double left = 0.0;
-  for (int axis = 0; axis < 6; ++axis) {
-    if (has(task_.coordinates, axis)) left += std::log1p(deviations[axis] / enough_[axis]);
-  }
-  return left;
+  const Eigen::SelfAdjointEigenSolver<Matrix6> principal(covariance(belief),
+                                                         Eigen::EigenvaluesOnly);
+  return principal.eigenvalues().array().max(0.0).sqrt().log1p().sum();
 }
 
 bool TouchTurns::certain(const Belief& belief) const {
-  const Vector6 deviations = deviation(belief);
-  for (int axis = 0; axis < 6; ++axis) {
-    if (has(task_.coordinates, axis) && deviations[axis] > enough_[axis]) return false;
-  }
-  return true;
+  return covariance(belief).diagonal().maxCoeff() <= 1.0;
 }
 
 std::vector<Guide> TouchTurns::find() {
@@ -130,21 +130,25 @@ void TouchTurns::sort(std::vector<Turn>& turns) const {
 
 /// Along every axis whose push may still settle something.
 void TouchTurns::further(const Turn& turn, std::vector<Turn>& next) {
-  const Vector6 deviations = deviation(turn.belief);
-  const auto open = [&](int axis) {
-    return has(task_.coordinates, axis) && deviations[axis] > enough_[axis];
-  };
+  const Matrix6 left = covariance(turn.belief);
+  const auto open = [&](int axis) { return left(axis, axis) > 1.0; };
   for (const Shape& shape : task_.environment) {
     for (int axis = 0; axis < 3; ++axis) {
       const bool turns = open(3 + (axis + 1) % 3) || open(3 + (axis + 2) % 3);
       if (!has(task_.coordinates, axis) || !(open(axis) || turns)) continue;
-      for (const int sign : {1, -1}) touch_sides(turn, shape, axis, sign, next);
+      for (const int sign : {1, -1}) {
+        // A part that is pressed settles more, but slides or rolls off what is round or narrow.
+        const bool held = touch_sides(turn, shape, {axis, sign, false}, next);
+        if (!held && open(axis)) touch_sides(turn, shape, {axis, sign, true}, next);
+      }
     }
   }
 }
 
-void TouchTurns::touch_sides(const Turn& turn, const Shape& shape, int axis, int sign,
+bool TouchTurns::touch_sides(const Turn& turn, const Shape& shape, const Push& push,
                              std::vector<Turn>& next) {
+  const int axis = push.axis;
+  const int sign = push.sign;
   const Eigen::AlignedBox3d box = around({shape});
   Pose before = {box.center(), task_.goal.orientation};
   before.position_m[axis] = sign > 0 ? box.min()[axis] : box.max()[axis];
@@ -167,19 +171,22 @@ void TouchTurns::touch_sides(const Turn& turn, const Shape& shape, int axis, int
       tried.push_back(side.at_m);
       if (side.to_rim_m < across_m) {
         narrow.push_back(side);
-      } else if (push(turn, side, axis, sign, next)) {
-        return;
+      } else if (touch(turn, side, push, next)) {
+        return true;
       }
     }
   }
   for (const TouchPlace& side : narrow) {
-    if (stopped() || push(turn, side, axis, sign, next)) return;
+    if (stopped()) return false;
+    if (touch(turn, side, push, next)) return true;
   }
   // What is off across a round side is off along it by less, and after the other axis by less
   // again.
   for (const TouchPlace& side : round_places(shape, axis, sign, clear_.position_m)) {
-    if (stopped() || push(turn, side, axis, sign, next)) return;
+    if (stopped()) return false;
+    if (touch(turn, side, push, next)) return true;
   }
+  return false;
 }
 
 /// What is uncertain where a belief's mean has come through free space.
@@ -204,8 +211,9 @@ std::optional<Pose> TouchTurns::met_at(const TouchPlace& side, int axis, int sig
 }
 
 /// With the tool's origin over the place, from where all of the spread is off the side.
-bool TouchTurns::push(const Turn& turn, const TouchPlace& side, int axis, int sign,
-                      std::vector<Turn>& next) {
+bool TouchTurns::touch(const Turn& turn, const TouchPlace& side, const Push& push,
+                       std::vector<Turn>& next) {
+  const auto [axis, sign, plain] = push;
   const BeliefSummary from = summarise(turn.belief, task_);
   const auto met = met_at(side, axis, sign);
   if (!met) return false;
@@ -221,7 +229,7 @@ bool TouchTurns::push(const Turn& turn, const TouchPlace& side, int axis, int si
 
   const double way_m = kFromFace_m + 2.0 * spread_m + task_.step_m;
   if (way_m > longest_move(task_, axis)) return false;
-  const Primitive primitive{0, stored(sign * way_m * Vector6::Unit(axis))};
+  const Primitive primitive{0, stored(sign * way_m * Vector6::Unit(axis)), plain};
   const auto ahead = succ_.successors(some_of(before), {&primitive, 1});
   if (!ahead.front() || !on_face(*ahead.front(), axis, sign)) return false;
   const auto ends = succ_.successors(before, {&primitive, 1});
@@ -234,6 +242,7 @@ bool TouchTurns::push(const Turn& turn, const TouchPlace& side, int axis, int si
   if (end.mean.orientation.angularDistance(task_.goal.orientation) > kTurnedMax_rad) return false;
   const double left_m2 = uncertainty(over_goal(touched.belief), metric_of(task_));
   ContactAttractor contact{axis, sign, end.mean, end.spread[axis], left_m2, true, via};
+  contact.plain = plain;
   for (int turned = 3; turned < 6; ++turned) {
     if (turned != 3 + axis && from.spread[turned] > enough_[turned] &&
         end.spread[turned] < task_.attractor_ratio * from.spread[turned]) {

@@ -29,9 +29,14 @@ class BlockRollout final : public Rollout {
  public:
   /// What a wall leaves of a turn about z: of a round part all.
   enum class Yaw : std::uint8_t { kSettled, kLeft };
+  /// Along x a part that is pressed slides off the block, as off a round one.
+  enum class Along : std::uint8_t { kHolds, kSlidesOff };
 
-  explicit BlockRollout(double half_m, Yaw yaw = Yaw::kSettled)
-      : low_m_(-half_m, -half_m, kTop_m - kHeight_m), high_m_(half_m, half_m, kTop_m), yaw_(yaw) {}
+  explicit BlockRollout(double half_m, Yaw yaw = Yaw::kSettled, Along x = Along::kHolds)
+      : low_m_(-half_m, -half_m, kTop_m - kHeight_m),
+        high_m_(half_m, half_m, kTop_m),
+        yaw_(yaw),
+        x_(x) {}
 
   [[nodiscard]] RolloutResult simulate(const Particle& particle, const MoveParameters& move,
                                        std::int64_t /*step_us*/,
@@ -53,11 +58,13 @@ class BlockRollout final : public Rollout {
         face = axis;
       }
     }
-    to.position_m += part * way_m;
+    if (face == 0 && x_ == Along::kSlidesOff && move.aligns) face = -1;
+    to.position_m += (face >= 0 ? part : 1.0) * way_m;
     if (face >= 0) {
       const Vector3 turn_rad = rotation_vector(from.orientation);
       Vector3 left_rad = turn_rad[face] * Vector3::Unit(face);
       if (yaw_ == Yaw::kLeft) left_rad.z() = turn_rad.z();
+      if (!move.aligns) left_rad = turn_rad;
       to.orientation = rotation_of(left_rad);
       result.move.outcome = Outcome::kContact;
       result.move.signature.bits = ContactSignature::bit(face, way_m[face] > 0.0 ? -1 : 1);
@@ -71,7 +78,7 @@ class BlockRollout final : public Rollout {
     return (p > low_m_.array()).all() && (p < high_m_.array()).all();
   }
   [[nodiscard]] std::unique_ptr<Rollout> clone() const override {
-    return std::make_unique<BlockRollout>(high_m_.x(), yaw_);
+    return std::make_unique<BlockRollout>(high_m_.x(), yaw_, x_);
   }
 
  private:
@@ -88,6 +95,7 @@ class BlockRollout final : public Rollout {
   Vector3 low_m_;
   Vector3 high_m_;
   Yaw yaw_;
+  Along x_;
 };
 
 Task block_task(double half_m) {
@@ -185,6 +193,41 @@ TEST(TouchTurns, OfAPartWhoseYawNothingSettlesAreWorthWhatTheyTellAtTheGoal) {
   const Belief start = corner_belief(turns.task, turns.start);
   EXPECT_TRUE(follow_guide(guides.front(), turns.task, start, turns.start.pose, turns.succ,
                            turns.pool.front()));
+}
+
+// Nothing that is pressed holds along x: there the part is touched and held as it was met, and a
+// press against another wall settles the rotations.
+TEST(TouchTurns, ArePlainWhereAPressSlidesOff) {
+  constexpr double kHalf_m = 0.04;
+  Turns turns(block_task(kHalf_m),
+              BlockRollout(kHalf_m, BlockRollout::Yaw::kSettled, BlockRollout::Along::kSlidesOff));
+  const std::vector<Guide> guides = turns.find();
+  ASSERT_FALSE(guides.empty());
+  CoordinateMask touched = 0;
+  for (const ContactAttractor& contact : guides.front().contacts) {
+    touched |= static_cast<CoordinateMask>(1U << contact.axis);
+    EXPECT_EQ(contact.plain, contact.axis == 0);
+    if (contact.plain) {
+      EXPECT_EQ(contact.flat, 0);
+    }
+  }
+  EXPECT_EQ(touched, 0b000111);
+  const auto way = follow_guide(guides.front(), turns.task, corner_belief(turns.task, turns.start),
+                                turns.start.pose, turns.succ, turns.pool.front());
+  ASSERT_TRUE(way);
+  EXPECT_FALSE(way->plain.empty());
+  for (const std::size_t step : way->plain) EXPECT_NE(way->moves[step].x(), 0.0);
+}
+
+TEST(TouchTurns, PlainOnesArePlainInThePlan) {
+  constexpr double kHalf_m = 0.04;
+  const BlockRollout slippery(kHalf_m, BlockRollout::Yaw::kSettled,
+                              BlockRollout::Along::kSlidesOff);
+  const Turns turns(block_task(kHalf_m), slippery);
+  const PlanReport report = make_plan(turns.task, turns.start, slippery, {});
+  ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
+  ASSERT_EQ(report.plan->parameter_sets.size(), 2U);
+  EXPECT_FALSE(report.plan->parameter_sets.back().aligns);
 }
 
 TEST(TouchTurns, AreFollowedByTheTruePhysicsWhereTheOtherHadAKnownStartWrong) {
