@@ -206,6 +206,13 @@ bool touched_again(Walk& walk, const Guide& guide) {
 
 }  // namespace
 
+bool can_touch(const Guide& guide, const Task& task, const Belief& start, const Pose& clear,
+               SuccessorEngine& succ, Rollout& rollout) {
+  Walk walk(task, start, clear, succ, rollout);
+  return std::all_of(guide.contacts.begin(), guide.contacts.end(),
+                     [&](const ContactAttractor& contact) { return walk.touch(contact); });
+}
+
 std::optional<GuideWay> follow_guide(const Guide& guide, const Task& task, const Belief& start,
                                      const Pose& clear, SuccessorEngine& succ, Rollout& rollout,
                                      std::string* left) {

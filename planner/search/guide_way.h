@@ -31,4 +31,8 @@ struct GuideWay {
                                                    SuccessorEngine& succ, Rollout& rollout,
                                                    std::string* left = nullptr);
 
+/// Whether a belief gets to each of a guide's touches in turn, wherever that leads to.
+[[nodiscard]] bool can_touch(const Guide& guide, const Task& task, const Belief& start,
+                             const Pose& clear, SuccessorEngine& succ, Rollout& rollout);
+
 }  // namespace tenon::planner

@@ -7,6 +7,7 @@
 
 #include "planner/search/free_legs.h"
 #include "planner/search/guide_moves.h"
+#include "planner/search/guide_way.h"
 #include "planner/search/placing.h"
 
 namespace tenon::planner {
@@ -254,19 +255,31 @@ bool TouchTurns::touch(const Turn& turn, const TouchPlace& side, const Push& pus
   return true;
 }
 
-/// The first of them that straight legs lead to and that are not the same touch.
+/// The first of them that straight legs lead to and that are not the same touch: such as moves lead
+/// to from every start before others, which may do from the tips.
 std::vector<TouchTurns::Turn> TouchTurns::best_of(std::vector<Turn> turns) {
   sort(turns);
   std::vector<Turn> kept;
-  for (Turn& turn : turns) {
-    if (kept.size() == kKept || stopped()) break;
-    const ContactAttractor& contact = turn.contacts.back();
-    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Turn& other) {
-      return same_touch(contact, other.contacts.back());
-    });
-    if (!known && in_legs(turn)) kept.push_back(std::move(turn));
+  for (const bool moves_lead : {true, false}) {
+    for (Turn& turn : turns) {
+      if (kept.size() == kKept || stopped()) break;
+      if (turn.contacts.empty()) continue;  // kept
+      const ContactAttractor& contact = turn.contacts.back();
+      const bool known = std::any_of(kept.begin(), kept.end(), [&](const Turn& other) {
+        return same_touch(contact, other.contacts.back());
+      });
+      if (!known && in_legs(turn) && (!moves_lead || in_moves(turn))) {
+        kept.push_back(std::move(turn));
+      }
+    }
   }
   return kept;
+}
+
+/// Legs are asked for the mean and its spread; a touch may be worth much where not every start gets
+/// to.
+bool TouchTurns::in_moves(const Turn& turn) {
+  return can_touch({turn.contacts, {}, 1.0}, task_, start_, clear_, succ_, rollout_);
 }
 
 bool TouchTurns::in_legs(const Turn& turn) {

@@ -66,6 +66,7 @@ class TouchTurns {
   bool touch(const Turn& turn, const TouchPlace& side, const Push& push, std::vector<Turn>& next);
   [[nodiscard]] std::vector<Turn> best_of(std::vector<Turn> turns);
   [[nodiscard]] bool in_legs(const Turn& turn);
+  [[nodiscard]] bool in_moves(const Turn& turn);
   [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
 
   const Task& task_;
