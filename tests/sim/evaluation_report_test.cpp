@@ -98,8 +98,7 @@ TEST(EvaluationSummary, AFailureInAWorldThatIsTiltedTooFarBreaksNoPromise) {
             std::string::npos);
   const auto json = nlohmann::json::parse(evaluation_json(evaluation));
   EXPECT_EQ(json["plans"][0]["summary"]["promised"]["runs"], 3);
-  EXPECT_NE(evaluation_html(evaluation).find("And tilted &le; 0.17&deg;"),
-            std::string::npos);
+  EXPECT_NE(evaluation_html(evaluation).find("And tilted &le; 0.17&deg;"), std::string::npos);
 }
 
 TEST(EvaluationSummary, ErrorsAreThoseOfRunsThatWereDone) {
