@@ -53,6 +53,19 @@ bool hangs_free(std::span<const Chain> chains, std::size_t step) {
 
 void shift(Step& step, int axis, double by_m) { step.displacement[axis] += by_m; }
 
+/// From the axes of a tool's moves to those that its pose is in: none but where it carries them.
+Eigen::Quaterniond move_axes(const Task& task, const Pose& tool) {
+  if (!task.motion.carried_axes) return Eigen::Quaterniond::Identity();
+  return tool.orientation * task.goal.orientation.conjugate();
+}
+
+/// A tool shifted along one of its moves' axes.
+Pose aside(const Task& task, const Pose& tool, int axis, double by_m) {
+  Pose shifted = tool;
+  shifted.position_m += move_axes(task, tool) * Vector3(by_m * Vector3::Unit(axis));
+  return shifted;
+}
+
 struct Range {
   double low_m = 0.0;
   double high_m = 0.0;
@@ -86,7 +99,7 @@ class Passage {
     const auto misses = [&](const Draw& draw) {
       if (!draw.chain.done) return true;
       const Pose end = draw.chain.end();
-      return !ends_well(end) && !ends_well(displaced(end, -by_m * Vector6::Unit(axis_)));
+      return !ends_well(end) && !ends_well(aside(task_, end, axis_, -by_m));
     };
     const std::vector<Draw> draws = run_(shifted, starts_, misses);
     return std::none_of(draws.begin(), draws.end(), misses);
@@ -104,13 +117,16 @@ class Passage {
     return inserted(task_, end) && within_tolerance(task_, end);
   }
 
-  /// Where on this axis it would be half way from the step on if nothing were there.
+  /// Where on this axis it would be half way from the step on if nothing were there, from the goal.
   [[nodiscard]] double half_way_m(const Chain& chain, std::size_t step) const {
     Pose half_way = chain.moves[step].pose;
+    const Eigen::Quaterniond axes = move_axes(task_, half_way);
     for (std::size_t i = 1; i < tail_.steps.size(); ++i) {
-      half_way.position_m += 0.5 * tail_.steps[i].displacement.head<3>();
+      half_way.position_m += axes * Vector3(0.5 * tail_.steps[i].displacement.head<3>());
     }
-    return seen_from(chain.start.environment, half_way).position_m[axis_];
+    half_way = seen_from(chain.start.environment, half_way);
+    const Vector3 off_m = half_way.position_m - task_.goal.position_m;
+    return (move_axes(task_, half_way).conjugate() * off_m)[axis_];
   }
 
   /// Up to where all arrive, to one side. @param beyond_m where they do not
@@ -155,10 +171,9 @@ bool stands_free(std::span<const Chain> chains, std::size_t step, const Task& ta
                  const std::vector<int>& axes, Rollout& rollout) {
   return std::none_of(chains.begin(), chains.end(), [&](const Chain& chain) {
     return std::any_of(axes.begin(), axes.end(), [&](int axis) {
-      const Vector6 aside = task.goal_tolerance_m * Vector6::Unit(axis);
       const Pose tool = chain.tool(step + 1);
-      return rollout.in_collision(displaced(tool, aside)) ||
-             rollout.in_collision(displaced(tool, -aside));
+      return rollout.in_collision(aside(task, tool, axis, task.goal_tolerance_m)) ||
+             rollout.in_collision(aside(task, tool, axis, -task.goal_tolerance_m));
     });
   });
 }
@@ -182,14 +197,16 @@ std::optional<Plan> with_passage_centred(const Plan& plan, std::span<const Chain
   const bool whole = std::all_of(chains.begin(), chains.end(), [&](const Chain& chain) {
     return chain.moves.size() == plan.steps.size();
   });
-  if (plan.steps.empty() || chains.empty() || !whole || task.motion.carried_axes) {
-    return std::nullopt;
-  }
+  if (plan.steps.empty() || chains.empty() || !whole) return std::nullopt;
   const auto step = placing(plan, chains, task, rollout);
   const std::vector<int> axes = step ? across(plan, *step, task) : std::vector<int>();
   if (axes.empty()) return std::nullopt;
-  const std::vector<Chain> usual = good_chains(run(plan, starts.usual, {}));
-  const std::vector<Chain> extreme = good_chains(run(plan, starts.extreme, {}));
+  const auto ran = [&](const std::vector<JudgedStart>& from) {
+    return from.empty() ? std::vector<Chain>(chains.begin(), chains.end())
+                        : good_chains(run(plan, from, {}));
+  };
+  const std::vector<Chain> usual = ran(starts.usual);
+  const std::vector<Chain> extreme = ran(starts.extreme);
   if (usual.empty() || extreme.empty()) return std::nullopt;
   Plan centred = plan;
   for (const int axis : axes) {

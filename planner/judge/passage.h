@@ -18,7 +18,8 @@ namespace tenon::planner {
 using RunStarts = std::function<std::vector<Draw>(const Plan&, std::span<const JudgedStart>,
                                                   const std::function<bool(const Draw&)>& until)>;
 
-/// From all over the reach. Those that do not arrive as it is count for nothing.
+/// From all over the reach. Those that do not arrive as it is count for nothing; where there are
+/// none, the chains that are known stand for them.
 struct PassageStarts {
   std::vector<JudgedStart> usual;
   std::vector<JudgedStart> extreme;  ///< tilted by as much as the plan is to hold
@@ -28,8 +29,7 @@ struct PassageStarts {
 /// the way from there to the middle of the shifts with which all usual starts still arrive, as far
 /// as the extreme ones bear it. The search aims by the mean of its particles; at a hole it is the
 /// farthest to either side that miss, and where the mean goes through they may all be on one. As it
-/// comes back from its bytes; empty where that gains next to nothing, and where moves go along axes
-/// that the tool carries, which turn with each start.
+/// comes back from its bytes; empty where that gains next to nothing.
 /// @param plan at contact speed throughout  @param chains of the plan, all done  @param rollout
 /// asked for collisions
 [[nodiscard]] std::optional<Plan> with_passage_centred(const Plan& plan,

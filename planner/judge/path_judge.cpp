@@ -103,10 +103,13 @@ Judgement PathJudge::at_once(const Plan& slow, std::span<const Chain> chains) {
 }
 
 std::optional<Plan> PathJudge::passage_centred(const Plan& plan, std::span<const Chain> chains) {
-  Task usual = held_;
-  usual.tilt_rad *= kUsualTilt;
-  const PassageStarts starts{passage_starts(plan, usual, start_, pool_.front()),
-                             passage_starts(plan, held_, start_, pool_.front())};
+  PassageStarts starts;
+  if (!tilted_axes(held_).empty()) {
+    Task usual = held_;
+    usual.tilt_rad *= kUsualTilt;
+    starts = {passage_starts(plan, usual, start_, pool_.front()),
+              passage_starts(plan, held_, start_, pool_.front())};
+  }
   const RunStarts run_them = [this](const Plan& tried, std::span<const JudgedStart> some,
                                     const std::function<bool(const Draw&)>& until) {
     return run(tried, some, effort_.corners, until);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <vector>
 
 #include "planner/judge/plan_draft.h"
@@ -13,6 +14,32 @@ namespace tenon::planner {
 namespace {
 
 constexpr double kPlay_m = 1e-3;  // to either side
+
+/// Walls that turn with their environment, for a tool that has turned with them as much and whose
+/// moves go along its own axes.
+class TurnedRollout final : public Rollout {
+ public:
+  explicit TurnedRollout(const WallRollout::World& world) : world_(world), walls_(world) {}
+
+  [[nodiscard]] RolloutResult simulate(const Particle& particle, const MoveParameters& move,
+                                       std::int64_t step_us,
+                                       std::vector<TraceSample>* trace) override {
+    Particle level = particle;
+    level.pose = particle.tool();
+    level.environment = {};
+    RolloutResult result = walls_.simulate(level, move, step_us, trace);
+    result.move.pose = seen_as(particle.environment, result.move.pose);
+    return result;
+  }
+  [[nodiscard]] bool in_collision(const Pose& tool) override { return walls_.in_collision(tool); }
+  [[nodiscard]] std::unique_ptr<Rollout> clone() const override {
+    return std::make_unique<TurnedRollout>(world_);
+  }
+
+ private:
+  WallRollout::World world_;
+  WallRollout walls_;
+};
 
 class Passage : public ::testing::Test {
  protected:
@@ -40,11 +67,15 @@ class Passage : public ::testing::Test {
     return shifted(aside_m, aside_m);
   }
 
-  [[nodiscard]] static std::vector<JudgedStart> aside(const std::vector<double>& aside_m) {
+  [[nodiscard]] std::vector<JudgedStart> aside(const std::vector<double>& aside_m) const {
     std::vector<JudgedStart> starts;
     for (const double x_m : aside_m) {
       JudgedStart start;
-      start.particle.pose.position_m = {-0.2 + x_m, -0.2, 0.0};
+      const double turn_rad = turn_each_rad * static_cast<double>(starts.size());
+      start.particle.environment.orientation = rotation_of(turn_rad * Vector3::UnitZ());
+      Pose seen;
+      seen.position_m = {-0.2 + x_m, -0.2, 0.0};
+      start.particle.pose = seen_as(start.particle.environment, seen);
       starts.push_back(start);
     }
     return starts;
@@ -64,10 +95,11 @@ class Passage : public ::testing::Test {
     return task;
   }
 
-  const Task task = into_the_slot();
+  Task task = into_the_slot();
   std::vector<Vector6> displacements = {Vector6::Unit(0) * 0.2, Vector6::Unit(1) * 0.4};
-  RolloutPool pool{WallRollout(slot()), 1};
-  double middle_m = 0.0;  ///< of what the search has seen
+  RolloutPool pool{TurnedRollout(slot()), 1};
+  double middle_m = 0.0;       ///< of what the search has seen
+  double turn_each_rad = 0.0;  ///< start by start, of the slot, and of the tool with it
   int runs = 0;
 };
 
@@ -99,6 +131,23 @@ TEST_F(Passage, IsTheUsualOnesMiddleAsFarAsTheExtremeOnesBearIt) {
 TEST_F(Passage, IsTheLastPlaceThatIsFreeToEitherSide) {
   displacements = {Vector6::Unit(0) * 0.2, Vector6::Unit(1) * 0.35, Vector6::Unit(1) * 0.05};
   EXPECT_NEAR(shifted({0.0, 0.8 * kPlay_m})[0], -0.4 * kPlay_m, 0.1 * kPlay_m);
+}
+
+// Each goes its own way in; the farthest is farthest across that.
+TEST_F(Passage, IsAcrossTheWayOfMovesThatTurnWithTheTool) {
+  task.coordinates |= 1U << 5;
+  task.motion.carried_axes = true;
+  turn_each_rad = 0.1;
+  std::vector<double> aside_m(12, 0.0);
+  aside_m[5] = 0.8 * kPlay_m;
+  const Vector6 by = shifted(aside_m);
+  EXPECT_NEAR(by[0], -0.4 * kPlay_m, 0.1 * kPlay_m);
+  EXPECT_EQ(by.tail<5>(), Vector6::Zero().tail<5>());
+}
+
+TEST_F(Passage, WithoutStartsOfItsOwnIsThatOfTheKnownChains) {
+  middle_m = 0.8 * kPlay_m;
+  EXPECT_NEAR(shifted({})[0], -0.8 * kPlay_m, 0.1 * kPlay_m);
 }
 
 TEST_F(Passage, OfAPlanWithoutAPlaceBeforeItsLastMoveIsNone) {
