@@ -10,8 +10,10 @@
 #include "planner/belief/corners.h"
 #include "planner/belief/remembered_rollout.h"
 #include "planner/belief/rollout_pool.h"
+#include "planner/calibration_effort.h"
 #include "planner/collision.h"
 #include "planner/goal_certainty.h"
+#include "planner/held_errors.h"
 #include "planner/judge/path_judge.h"
 #include "planner/progress.h"
 #include "planner/search/contact_greedy.h"
@@ -20,7 +22,6 @@
 #include "planner/search/touch_turns.h"
 #include "planner/search_moves.h"
 #include "planner/searched_graph.h"
-#include "planner/tilt_effort.h"
 #include "planner/wording.h"
 #include "shared/plan/codec.h"
 
@@ -54,12 +55,11 @@ class Planning {
         long_succ_(search_pool_, long_move(task, search_move(task, start, assumptions_)),
                    search_step_us(task)),
         judge_(task, start, {options.method, assumptions_, options.draws, options.reach}, pool_,
-               now_s_) {
+               now_s_),
+        errors_(task) {
     report_.method = options.method;
-    if (options.progress) {
-      for (RolloutPool* pool : {&pool_, &search_pool_}) {
-        pool->after_each_move([this] { tell_if_silent(); });
-      }
+    for (RolloutPool* pool : {&pool_, &search_pool_}) {
+      if (options.progress) pool->after_each_move([this] { tell_if_silent(); });
     }
   }
 
@@ -70,19 +70,21 @@ class Planning {
     if (const std::string beyond = enter_reach(); !beyond.empty()) {
       return ended(PlanStatus::kOutOfReach, beyond);
     }
-    const Belief start = belief_at_start();
+    const Belief start = held(start_belief(task_, start_, options_.method));
     if (at_goal(summarise(start, task_), task_)) {
       return ended(PlanStatus::kAlreadyAtGoal, already_at_goal(start_));
     }
     const Attractors attractors = guides_from(start);
     searched_.emplace(task_, start, attractors, succ_);
-    for (const double tilt_rad : tilts_to_hold(task_)) {
-      if (tilt_.refuted()) progress_.tell(smaller_tilt(tilt_rad));
-      tilt_.begin(moves_simulated(), succ_.counters());
-      judge_.hold_tilt(tilt_rad);
+    for (const CalibrationErrors& errors : errors_to_hold(task_)) {
+      if (errors != errors_to_hold(task_).front()) progress_.tell(less_to_hold(errors));
+      effort_.begin(moves_simulated(), succ_.counters());
+      judge_.hold(errors);
+      errors_.hold(errors);
       round_ = 0;
       if (found(start, attractors)) return improve(), ended(PlanStatus::kPlanned, "");
-      if (!tilt_.refuted() || out_of_time() || out_of_moves()) break;
+      const bool less_may = effort_.refuted() || errors.sensor_error_m > 0.0;
+      if (!less_may || out_of_time() || out_of_moves()) break;
     }
     if (!report_.search.has_path) return without_path();
     return ended(PlanStatus::kNotCertified, every_path_refuted(report_, options_.rounds_max));
@@ -92,14 +94,18 @@ class Planning {
   /// Guides followed to the letter, or a search along them. @return whether there is a plan
   bool found(const Belief& start, const Attractors& attractors) {
     searched_->begin_from(start);
-    if (!attractors.turns.empty() && followed_in_turn(attractors)) return true;
+    const bool in_turn = !attractors.turns.empty() || errors_.felt_less();
+    if (in_turn && followed_in_turn(attractors)) return true;
+    if (errors_.less_may_be_felt()) return false;
     searched_->begin_from(start);
     const auto enough = [this] {
-      return !is_baseline() && tilt_.searched(succ_.counters()) >= kFirstMoves;
+      return !is_baseline() && effort_.searched(succ_.counters()) >= kFirstMoves;
     };
     if (searched([&] { return out_of_budget() || enough(); })) return true;
-    return enough() &&
-           (followed(attractors.candidates) || searched([this] { return out_of_budget(); }));
+    const std::vector<Guide>& guides = attractors.candidates;
+    return enough() && (std::any_of(guides.begin(), guides.end(),
+                                    [this](const Guide& guide) { return leads(guide); }) ||
+                        searched([this] { return out_of_budget(); }));
   }
 
   /// From here on what the arm cannot make does not exist. @return why there is no plan then
@@ -120,7 +126,7 @@ class Planning {
   [[nodiscard]] bool out_of_time() const { return progress_.since_began_s() > task_.time_limit_s; }
   [[nodiscard]] bool out_of_moves() const { return moves_simulated() >= options_.moves_max; }
   [[nodiscard]] bool out_of_budget() const {
-    return out_of_moves() || out_of_time() || tilt_.spent(moves_simulated());
+    return out_of_moves() || out_of_time() || effort_.spent(moves_simulated());
   }
 
   [[nodiscard]] std::uint64_t moves_simulated() const {
@@ -140,11 +146,6 @@ class Planning {
     return held;
   }
 
-  /// The method's particles, in the cell.
-  [[nodiscard]] Belief belief_at_start() const {
-    return held(start_belief(task_, start_, options_.method));
-  }
-
   Attractors guides_from(const Belief& start) {
     Attractors attractors = timed(now_s_, report_.times.attractors_s, [&] {
       return is_baseline()
@@ -161,7 +162,7 @@ class Planning {
   }
 
   /// Several errors at their largest at once: what touches have to hold for that turn the part.
-  [[nodiscard]] Belief corners() const { return held(corner_belief(task_, start_)); }
+  [[nodiscard]] Belief corners() const { return held(corner_belief(errors_.task(), start_)); }
 
   std::vector<Guide> touched_in_turn(const Belief& starts) {
     const std::function<bool()> stop = [this] { return out_of_budget(); };
@@ -170,11 +171,12 @@ class Planning {
 
   /// Starts that were not known, and that the guides do not lead, have others looked for that hold
   /// for them too. A guide that does not lead all corners at once may lead the tips, and what of
-  /// the corners its way then misses.
+  /// the corners its way then misses: but not where less may be held instead.
   bool followed_in_turn(const Attractors& attractors) {
     const Belief tips = searched_->start();
     for (const Particle& corner : corners().particles) searched_->add(corner);
     const auto leads_from_some = [&](const Guide& guide) {
+      if (errors_.less_may_be_felt()) return settles(guide, task_) && leads(guide);
       if (leads(guide)) return true;
       const Belief all = searched_->start();
       searched_->begin_from(tips);
@@ -182,19 +184,23 @@ class Planning {
       searched_->begin_from(all);
       return false;
     };
-    doing_ = "following guides";
-    std::vector<Guide> candidates = attractors.turns;
-    std::size_t known = searched_->start().particles.size();
-    while (std::none_of(candidates.begin(), candidates.end(), leads_from_some)) {
-      if (searched_->start().particles.size() == known || out_of_budget()) return false;
-      known = searched_->start().particles.size();
-      doing_ = "looking for guides";
-      candidates = timed(now_s_, report_.times.attractors_s,
-                         [this] { return touched_in_turn(searched_->start()); });
-      progress_.tell(guides_found(candidates, long_succ_.counters().rollouts));
-      doing_ = "following guides";
+    const auto known = [this] { return searched_->start().particles.size(); };
+    std::size_t before = known();
+    std::vector<Guide> guides = errors_.felt_less() ? guides_in_turn(corners()) : attractors.turns;
+    while (std::none_of(guides.begin(), guides.end(), leads_from_some)) {
+      if (known() == before || errors_.less_may_be_felt() || out_of_budget()) return false;
+      before = known();
+      guides = guides_in_turn(searched_->start());
     }
     return true;
+  }
+
+  std::vector<Guide> guides_in_turn(const Belief& starts) {
+    doing_ = "looking for guides";
+    std::vector<Guide> guides =
+        timed(now_s_, report_.times.attractors_s, [&] { return touched_in_turn(starts); });
+    progress_.tell(guides_found(guides, long_succ_.counters().rollouts));
+    return guides;
   }
 
   /// Searches, each without what the ones before had refuted. @return whether there is a plan
@@ -213,16 +219,11 @@ class Planning {
     return false;
   }
 
-  /// Follows one guide after the other to the letter. @return whether there is a plan
-  bool followed(const std::vector<Guide>& candidates) {
-    doing_ = "following guides";
-    return std::any_of(candidates.begin(), candidates.end(),
-                       [this](const Guide& guide) { return leads(guide); });
-  }
-
-  /// A start that was not known makes the next try take another way; one that was, and did
-  /// otherwise than the search had it, makes the next tries go by what judges.
+  /// Follows a guide to the letter. A start that was not known makes the next try take another way;
+  /// one that was, and did otherwise than the search had it, makes the next tries go by what
+  /// judges.
   bool leads(const Guide& guide) {
+    doing_ = "following guides";
     SuccessorEngine* succ = &succ_;
     for (int tries = 0; tries < kTriesAGuide && !out_of_budget(); ++tries) {
       std::string left;
@@ -239,7 +240,7 @@ class Planning {
         return true;
       }
       const auto& refutation = std::get<Refutation>(judgement);
-      tilt_.refute(refutation.by_tilt, way->moves.size(), moves_simulated());
+      effort_.refute(refutation.by_calibration, way->moves.size(), moves_simulated());
       const std::size_t fresh = searched_->add_starts(refutation);
       const bool lesser = options_.search_physics || search_step_us(task_) > task_.rollout_step_us;
       const bool truer = fresh == 0 && succ != &true_succ_ && lesser;
@@ -267,7 +268,7 @@ class Planning {
   }
 
   void learn(const Refutation& refutation) {
-    tilt_.refute(refutation.by_tilt, report_.search.path.size(), moves_simulated());
+    effort_.refute(refutation.by_calibration, report_.search.path.size(), moves_simulated());
     const auto refused_step = searched_->learn(refutation, report_.search.path);
     report_.refusals.push_back(lesson(refutation, refused_step));
     report_.rounds.back().outcome = "refuted: " + report_.refusals.back();
@@ -275,14 +276,12 @@ class Planning {
   }
 
   PlanReport without_path() {
-    PlanStatus status = PlanStatus::kExhausted;
-    if (report_.search.status == SearchStatus::kStopped) {
-      status = out_of_moves()  ? PlanStatus::kMoveLimit
-               : out_of_time() ? PlanStatus::kTimeLimit
-                               : PlanStatus::kExpansionLimit;
-    } else if (report_.guides == 0 && !is_baseline()) {
-      status = PlanStatus::kNoAttractor;
-    }
+    const bool stopped = report_.search.status == SearchStatus::kStopped;
+    const PlanStatus status = out_of_moves()                          ? PlanStatus::kMoveLimit
+                              : out_of_time()                         ? PlanStatus::kTimeLimit
+                              : stopped                               ? PlanStatus::kExpansionLimit
+                              : report_.guides == 0 && !is_baseline() ? PlanStatus::kNoAttractor
+                                                                      : PlanStatus::kExhausted;
     const SearchLimits limits{task_.time_limit_s, options_.expansions_max, options_.moves_max};
     const std::string refused = reach_ ? reach_->refused_text() : "";
     return ended(status, no_path(status, report_, searched_->graph(), limits) +
@@ -381,7 +380,8 @@ class Planning {
   std::optional<MoveReach> reach_;  ///< where an arm is asked
   std::optional<SearchedGraph> searched_;
   std::vector<Vector6> kept_path_;  ///< that the plan was made of
-  TiltEffort tilt_;
+  CalibrationEffort effort_;
+  HeldErrors errors_;
   std::size_t round_ = 0;
   bool refuted_ = false;  ///< the last better path
   const char* doing_ = "looking for guides";

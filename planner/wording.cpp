@@ -92,10 +92,16 @@ std::string path_found(const SearchResult& search) {
                 search.expanded.size());
 }
 
-std::string smaller_tilt(double held_rad) {
-  if (held_rad == 0.0) return "no plan bears a tilt: looking for one without";
-  return format("no plan bears that tilt: looking for one that bears %.2f degrees",
-                shown(held_rad, 3));
+std::string less_to_hold(const CalibrationErrors& held) {
+  if (held == CalibrationErrors{}) {
+    return "no plan bears what calibration may leave: looking for one without";
+  }
+  std::string text = format("no plan bears that tilt: looking for one that bears %.2f degrees",
+                            shown(held.tilt_rad, 3));
+  if (held.sensor_error_m > 0.0) {
+    text += format(", and the force sensor %.2g mm off", 1e3 * held.sensor_error_m);
+  }
+  return text;
 }
 
 std::string way_refuted(std::size_t starts, bool truer) {

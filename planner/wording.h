@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/judge/judged_starts.h"
 #include "planner/judge/refutation.h"
 #include "planner/plan_report.h"
 #include "planner/search/belief_graph.h"
@@ -38,8 +39,8 @@ struct SearchLimits {
 [[nodiscard]] std::string guide_followed(const Guide& guide, std::size_t moves);
 [[nodiscard]] std::string path_found(const SearchResult& search);
 
-/// No plan was found for more of the task's tilt. @param held_rad of it from now on
-[[nodiscard]] std::string smaller_tilt(double held_rad);
+/// No plan was found for more of the task's calibration errors. @param held of them from now on
+[[nodiscard]] std::string less_to_hold(const CalibrationErrors& held);
 
 /// What follows for the next way that a guide leads from what refuted the last one.
 /// @param starts that have become particles  @param truer whether the guide is followed by what

@@ -48,6 +48,20 @@ Metric metric_of(const Task& task) {
   return metric;
 }
 
+std::vector<Vector3> sensor_errors(const Task& task) {
+  std::vector<Vector3> errors = {Vector3::Zero()};
+  constexpr unsigned kRotations = 0b111000;
+  if ((task.compliance.compliant_axes & kRotations) == 0 || task.sensor_error_m == 0.0) {
+    return errors;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double error_m : {task.sensor_error_m, -task.sensor_error_m}) {
+      errors.emplace_back(error_m * Vector3::Unit(axis));
+    }
+  }
+  return errors;
+}
+
 Particle particle_off(const Vector6& off, const Task& task, const Start& start,
                       const PhysicalParameters& physics) {
   Vector6 turn = Vector6::Zero();
@@ -143,6 +157,9 @@ void append_cell(const Particle& particle, double cell_m, double cell_rad,
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.contact_stiffness_Npm));
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.oversize_m));
   key.push_back(std::bit_cast<std::int64_t>(particle.physics.latency_s));
+  for (const double error_m : particle.physics.sensor_error_m) {
+    key.push_back(std::bit_cast<std::int64_t>(error_m));
+  }
 }
 
 Grid grid_of(const Task& task) {

@@ -38,6 +38,10 @@ struct Metric {
 
 [[nodiscard]] Metric metric_of(const Task& task);
 
+/// How far off the force sensor may be: not at all, then as far as the task says along each axis
+/// either way. Not at all alone where no move yields in rotation, and so a torque turns nothing.
+[[nodiscard]] std::vector<Vector3> sensor_errors(const Task& task);
+
 /// A tool that stands at its nominal start, seen by an environment that is off: nothing touches.
 /// @param off of the tool, along the task's axes and about them at the task's error_about_m; the
 /// environment's error is as much the other way

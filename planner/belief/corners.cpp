@@ -24,6 +24,7 @@ Belief corner_belief(const Task& task, const Start& start) {
   }
   if (axes.empty()) return single_particle(task, start);
   const double out = task.particle_sigmas;
+  const std::vector<Vector3> errors = sensor_errors(task);
   Belief belief;
   for (unsigned corner = 0; corner < 1U << std::min(axes.size(), kFull); ++corner) {
     Vector6 side = Vector6::Zero();
@@ -32,9 +33,10 @@ Belief corner_belief(const Task& task, const Start& start) {
     }
     if (task.errors != Distribution::kUniform) side.normalize();
     const double friction = (corner >> 1U & 1U) != 0 ? task.friction.low : task.friction.high;
-    belief.particles.push_back(
-        particle_off(out * side.cwiseProduct(start.sigma), task, start,
-                     {friction, task.contact_stiffness_Npm, task.oversize_m}));
+    Particle particle = particle_off(out * side.cwiseProduct(start.sigma), task, start,
+                                     {friction, task.contact_stiffness_Npm, task.oversize_m});
+    particle.physics.sensor_error_m = errors[corner % errors.size()];
+    belief.particles.push_back(particle);
   }
   return belief;
 }

@@ -47,7 +47,7 @@ class RememberedRollout::Memory {
   struct QuestionHash {
     std::size_t operator()(const Question& question) const {
       const Particle& particle = question.particle;
-      const std::array<double, 23> values = {particle.pose.position_m.x(),
+      const std::array<double, 26> values = {particle.pose.position_m.x(),
                                              particle.pose.position_m.y(),
                                              particle.pose.position_m.z(),
                                              particle.pose.orientation.x(),
@@ -62,6 +62,9 @@ class RememberedRollout::Memory {
                                              particle.physics.friction,
                                              particle.physics.oversize_m,
                                              particle.physics.latency_s,
+                                             particle.physics.sensor_error_m.x(),
+                                             particle.physics.sensor_error_m.y(),
+                                             particle.physics.sensor_error_m.z(),
                                              question.move.displacement[0],
                                              question.move.displacement[1],
                                              question.move.displacement[2],

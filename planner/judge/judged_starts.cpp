@@ -138,6 +138,8 @@ std::vector<Vector6> rim_directions(const Task& task, const Start& start) {
 std::vector<JudgedStart> starts_at(double sigmas, const std::vector<PhysicalParameters>& physics,
                                    const Task& task, const Start& start, Rollout& rollout) {
   const std::vector<Tilt> tilts = extreme_tilts(task);
+  // As many as share no factor with the corners: taking turns ties none of them to one.
+  const std::vector<Vector3> errors = sensor_errors(task);
   std::vector<JudgedStart> starts;
   for (const Vector6& direction : rim_directions(task, start)) {
     const Particle level =
@@ -147,6 +149,7 @@ std::vector<JudgedStart> starts_at(double sigmas, const std::vector<PhysicalPara
       Particle particle = tilted(level, tilts[starts.size() % tilts.size()], task);
       if (rollout.in_collision(particle.tool())) particle = level;
       particle.physics = one;
+      particle.physics.sensor_error_m = errors[starts.size() % errors.size()];
       starts.push_back({particle, sigmas});
     }
   }
@@ -162,6 +165,8 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
   Random random(seed);
   Random late(stream_seed(seed, "latency"));
   Random turned(stream_seed(seed, "tilt"));
+  Random off(stream_seed(seed, "sensor"));
+  const bool felt = sensor_errors(task).size() > 1;
   std::vector<JudgedStart> starts;
   for (std::size_t i = 0; i < count; ++i) {
     const bool at_corner = physics == DrawnPhysics::kCorners && i % 2 == 1;
@@ -173,6 +178,11 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
     if (task.oversize_m > 0.0) p.oversize_m = random.uniform() * task.oversize_m;
     p.latency_s = late.uniform() * plan.latency_max_s;
     if (at_corner) p = extremes[i / 2 % extremes.size()];
+    if (felt) {
+      for (double& error_m : p.sensor_error_m) {
+        error_m = off.uniform(-task.sensor_error_m, task.sensor_error_m);
+      }
+    }
     starts.push_back(drawn);
   }
   return starts;
@@ -186,9 +196,23 @@ std::vector<int> tilted_axes(const Task& task) {
   return axes;
 }
 
-std::vector<double> tilts_to_hold(const Task& task) {
-  if (tilted_axes(task).empty()) return {0.0};
-  return {task.tilt_rad, 0.5 * task.tilt_rad, 0.0};
+std::vector<CalibrationErrors> errors_to_hold(const Task& task) {
+  const bool tilted = !tilted_axes(task).empty();
+  const bool felt = sensor_errors(task).size() > 1;
+  const auto share = [&](double of) {
+    return CalibrationErrors{tilted ? of * task.tilt_rad : 0.0,
+                             felt ? of * task.sensor_error_m : 0.0};
+  };
+  if (tilted) return {share(1.0), share(0.5), share(0.0)};
+  if (felt) return {share(1.0), share(0.0)};
+  return {share(0.0)};
+}
+
+Task holding(const Task& task, const CalibrationErrors& errors) {
+  Task held = task;
+  held.tilt_rad = errors.tilt_rad;
+  held.sensor_error_m = errors.sensor_error_m;
+  return held;
 }
 
 Tilt tilt_of(const Particle& particle, const Task& task, const Start& start) {
@@ -235,6 +259,7 @@ std::vector<JudgedStart> passage_starts(const Plan& plan, const Task& task, cons
                                         Rollout& rollout) {
   const std::vector<PhysicalParameters> physics = corners(plan, task);
   const std::vector<Tilt> tilts = extreme_tilts(task);
+  const std::vector<Vector3> errors = sensor_errors(task);
   Task level = task;
   level.tilt_rad = 0.0;
   const std::vector<JudgedStart> rim =
@@ -249,6 +274,7 @@ std::vector<JudgedStart> passage_starts(const Plan& plan, const Task& task, cons
     if (rollout.in_collision(particle.tool())) particle = from.particle;
     // Odd ones as drawn, where that is another size; no kind of tilt goes with the rest.
     particle.physics = physics[(2 * (i / 2 + i / (4 * each)) + i % 2) % physics.size()];
+    particle.physics.sensor_error_m = errors[i % errors.size()];
     starts.push_back({particle, from.sigmas_out});
   }
   return starts;

@@ -33,8 +33,20 @@ enum class DrawnPhysics : std::uint8_t {
 /// The rotations that are no coordinate, where the task has a tilt.
 [[nodiscard]] std::vector<int> tilted_axes(const Task& task);
 
-/// What a plan is tried with in turn until one is found: all of the task's tilt, half of it, none.
-[[nodiscard]] std::vector<double> tilts_to_hold(const Task& task);
+/// What calibration may have left of errors that no coordinate is, as a task says it.
+struct CalibrationErrors {
+  double tilt_rad = 0.0;
+  double sensor_error_m = 0.0;
+
+  friend bool operator==(const CalibrationErrors&, const CalibrationErrors&) = default;
+};
+
+/// What a plan is tried with in turn until one is found: all that the task says, half of it where
+/// it has a tilt, nothing.
+[[nodiscard]] std::vector<CalibrationErrors> errors_to_hold(const Task& task);
+
+/// The task with these.
+[[nodiscard]] Task holding(const Task& task, const CalibrationErrors& errors);
 
 /// What calibration has turned: rotation vectors in task axes, about axes that are no coordinates.
 struct Tilt {
@@ -50,6 +62,7 @@ struct Tilt {
 [[nodiscard]] Tilt tilt_of(const Particle& particle, const Task& task, const Start& start);
 
 /// The particle with its environment turned about coordinates alone, and its part as it is held.
+/// A force sensor that is off stays so.
 [[nodiscard]] Particle without_tilt(const Particle& particle, const Task& task, const Start& start);
 
 /// On the rim of the particles' reach, c_p standard deviations out or at the bounds, along every

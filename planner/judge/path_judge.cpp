@@ -199,7 +199,8 @@ Judgement PathJudge::estimated(Plan plan, Certification certification, const Ext
                        drawn_starts(judging_seed(plan), parameters_.draws, DrawnPhysics::kEven,
                                     plan, task_, start_, pool_.front()),
                        effort_.validation);
-  if (held_.tilt_rad < tilts_to_hold(task_).front()) {
+  const CalibrationErrors all = errors_to_hold(task_).front();
+  if (held_.tilt_rad < all.tilt_rad || held_.sensor_error_m < all.sensor_error_m) {
     // With its envelopes, and centred, it may hold more.
     hold_extremes(
         plan, task_, start_, pool_.front(), estimate,
@@ -207,7 +208,7 @@ Judgement PathJudge::estimated(Plan plan, Certification certification, const Ext
   } else {
     estimate.corners = decided_by(plan, task_, extremes.corners);
     estimate.rim = decided_by(plan, task_, extremes.rim);
-    estimate.tilt_rad = held_.tilt_rad;
+    estimate.held = all;
   }
   plan.cost = certification.cost;
   plan.draws = static_cast<std::uint32_t>(estimate.draws.size());
@@ -266,14 +267,16 @@ Refutation PathJudge::told(const Plan& plan, const Draw& miss) {
   }
   std::vector<JudgedStart> levelled;
   const auto level = [&](const Particle& start) {
-    if (tilt_of(start, task_, start_).norm_rad() == 0.0) return;
+    const bool off = !start.physics.sensor_error_m.isZero(0.0);
+    if (!off && tilt_of(start, task_, start_).norm_rad() == 0.0) return;
     levelled.push_back({without_tilt(start, task_, start_), 0.0});
+    levelled.back().particle.physics.sensor_error_m.setZero();
   };
   level(miss.chain.start);
   for (const Particle& start : refutation.others) level(start);
   const std::vector<Draw> draws =
       run(plan, levelled, effort_.corners, [](const Draw& draw) { return draw.at_goal; });
-  refutation.by_tilt = arrived(draws) > 0;
+  refutation.by_calibration = arrived(draws) > 0;
   return refutation;
 }
 

@@ -52,8 +52,8 @@ class PathJudge {
   PathJudge(const Task& task, const Start& start, const Parameters& parameters, RolloutPool& pool,
             ClockSeconds now_s);
 
-  /// From now on starts refute that are tilted by up to so much; at first, by all of the task's.
-  void hold_tilt(double tilt_rad) { held_.tilt_rad = tilt_rad; }
+  /// From now on starts refute that have up to these errors; at first, all of the task's.
+  void hold(const CalibrationErrors& errors) { held_ = holding(task_, errors); }
 
   /// What of the starts at the corners a refutation tells.
   enum class Misses : std::uint8_t {

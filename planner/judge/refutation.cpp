@@ -72,6 +72,8 @@ std::string corner_name(const Particle& particle, const Task& task, const Start&
                 ? ", the part as drawn"
                 : format(", the part %.3g mm larger than drawn", 1e3 * corner.oversize_m);
   }
+  const Vector3& off_m = corner.sensor_error_m;
+  if (!off_m.isZero(0.0)) name += format(", the force sensor %.2g mm off", 1e3 * off_m.norm());
   return name + tilt_name(particle, task, start);
 }
 

@@ -17,7 +17,7 @@ struct Refutation {
   std::optional<std::size_t> step;  ///< at which the chain went wrong, where that is known
   std::string why;                  ///< one line
   std::vector<Particle> others{};   ///< starts that the path has missed, the chain's among them
-  bool by_tilt = false;             ///< one of these starts would not have missed without its tilt
+  bool by_calibration = false;  ///< one of these would not have missed without calibration errors
 };
 
 /// The earliest disagreement. @param certification one that does not hold

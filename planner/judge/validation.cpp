@@ -84,8 +84,9 @@ void hold_extremes(const Plan& plan, const Task& task, const Start& start, Rollo
                    Validation& validation,
                    const std::function<std::vector<Draw>(std::span<const JudgedStart>)>& run) {
   Task held = task;
-  for (const double tilt_rad : tilts_to_hold(task)) {
-    held.tilt_rad = validation.tilt_rad = tilt_rad;
+  for (const CalibrationErrors& errors : errors_to_hold(task)) {
+    validation.held = errors;
+    held = holding(task, errors);
     validation.corners = run(corner_starts(plan, held, start, rollout));
     const bool all = arrived(validation.corners) == validation.corners.size();
     if (all || plan.method != PlanMethod::kMha) break;

@@ -31,9 +31,9 @@ struct Validation {
   /// rim_starts(): beyond what a plan has to hold for. They show how far its steps travel from
   /// starts that are hardly ever drawn.
   std::vector<Draw> rim;
-  /// Of corners and rim: what the plan holds of the task's tilt at all corners. The draws have all
-  /// of it.
-  double tilt_rad = 0.0;
+  /// Of corners and rim: what the plan holds of the task's at all corners. The draws have all of
+  /// it.
+  CalibrationErrors held;
 
   [[nodiscard]] std::size_t at_goal() const;
   /// Those at most `sigmas` standard deviations out, and how many of them ended at the goal.
@@ -66,7 +66,7 @@ inline constexpr std::size_t kDrawsMax = 100'000;
                                            std::span<const JudgedStart> starts, RolloutPool& pool,
                                            const std::function<bool(const Draw&)>& until = {});
 
-/// Corners and rim, with the largest of tilts_to_hold() that holds at all corners, or the smallest.
+/// Corners and rim, with the first of errors_to_hold() that holds at all corners, or the last.
 /// A baseline has all of the task's, which it holds or not.
 /// @param rollout asked for collisions  @param run starts through the plan
 void hold_extremes(const Plan& plan, const Task& task, const Start& start, Rollout& rollout,

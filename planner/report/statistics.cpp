@@ -76,7 +76,8 @@ void add_plan(Json& json, const PlanReport& report, const Task& task) {
   json["wilson95_high"] = interval.high;
   json["corners"] = report.validation.corners.size();
   json["corners_at_goal"] = arrived(report.validation.corners);
-  json["corners_tilt_rad"] = report.validation.tilt_rad;
+  json["corners_tilt_rad"] = report.validation.held.tilt_rad;
+  json["corners_sensor_error_m"] = report.validation.held.sensor_error_m;
   json["beyond"] = report.validation.rim.size();
   json["beyond_at_goal"] = arrived(report.validation.rim);
   json["particle_sigmas"] = task.particle_sigmas;

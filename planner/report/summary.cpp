@@ -146,7 +146,14 @@ std::string corners_text(const Validation& validation, const Task& task) {
   if (task.oversize_m > 0.0) {
     physics += format(", the part as drawn and %g mm larger", 1e3 * task.oversize_m);
   }
-  if (!tilted_axes(task).empty()) physics += tilt_text(validation.tilt_rad, task.tilt_rad);
+  const CalibrationErrors& held = validation.held;
+  if (sensor_errors(task).size() > 1) {
+    const double stated_m = task.sensor_error_m;
+    physics += ", the force sensor up to " +
+               (held.sensor_error_m < stated_m ? format("%g of ", 1e3 * held.sensor_error_m) : "") +
+               format("%g mm off", 1e3 * stated_m);
+  }
+  if (!tilted_axes(task).empty()) physics += tilt_text(held.tilt_rad, task.tilt_rad);
   return format("%zu of %zu starts ", arrived(validation.corners), validation.corners.size()) +
          reach_text(task) + " end at the goal, at " + physics;
 }

@@ -291,4 +291,9 @@ bool TouchTurns::in_legs(const Turn& turn) {
       .has_value();
 }
 
+bool settles(const Guide& guide, const Task& task) {
+  return !guide.contacts.empty() &&
+         guide.contacts.back().uncertainty_m2 <= task.goal_uncertainty_m2;
+}
+
 }  // namespace tenon::planner

@@ -80,4 +80,7 @@ class TouchTurns {
   const std::function<bool()>& stop_;
 };
 
+/// Whether touches in turn leave no more uncertain at the goal than it takes.
+[[nodiscard]] bool settles(const Guide& guide, const Task& task);
+
 }  // namespace tenon::planner

@@ -11,6 +11,7 @@
 #include "shared/config/load_shapes.h"
 #include "shared/config/variant.h"
 #include "shared/config/yaml_value.h"
+#include "shared/motion/move_parameters.h"
 #include "shared/motion/rules.h"
 #include "shared/task/inserted.h"
 #include "shared/task/own_moves.h"
@@ -272,8 +273,8 @@ void read_search(const Value& value, Task& task) {
 constexpr double kCalibrated_rad = 3e-3;
 
 void read_physics(const Value& value, Task& task) {
-  const Map map(value,
-                {"friction", "contact_stiffness_Npm", "oversize_m", "tilt_rad", "rollout_step_s"});
+  const Map map(value, {"friction", "contact_stiffness_Npm", "oversize_m", "tilt_rad",
+                        "sensor_error_m", "rollout_step_s"});
   const Map friction(map.at("friction"), {"low", "nominal", "high"});
   task.friction.low = friction.number("low", {0.0, 2.0});
   task.friction.nominal = friction.number("nominal", {task.friction.low, 2.0});
@@ -282,6 +283,8 @@ void read_physics(const Value& value, Task& task) {
   map.optional_number("oversize_m", {0.0, 0.01}, task.oversize_m);
   task.tilt_rad = kCalibrated_rad;
   map.optional_number("tilt_rad", {0.0, 0.05}, task.tilt_rad);
+  task.sensor_error_m = kPressLever_m;
+  map.optional_number("sensor_error_m", {0.0, 0.02}, task.sensor_error_m);
 
   // A longer way within one step sinks too deep before the contact answers.
   constexpr double kStepTravelMax_m = 0.5e-3;

@@ -19,6 +19,8 @@ struct PhysicalParameters {
   double oversize_m = 0.0;  ///< by which every size of the held part exceeds what is drawn
   /// Of the arm, (n + 1/2) T + tau_arm: by which what the move sees of pose and wrench is old.
   double latency_s = 0.0;
+  /// From where the arm takes its force sensor to be to where that measures, in the tool's axes.
+  Vector3 sensor_error_m = Vector3::Zero();
 
   friend bool operator==(const PhysicalParameters&, const PhysicalParameters&) = default;
 };

@@ -102,6 +102,9 @@ struct Task {
   /// Calibration may have turned the environment, and the part in the hand, by up to this about any
   /// axis that is no coordinate.
   double tilt_rad = 0.0;
+  /// The force sensor may measure that far from where the cell has it, along any of its axes: what
+  /// moves that yield in rotation feel as a torque.
+  double sensor_error_m = 0.0;
   std::int64_t rollout_step_us = 2000;
 };
 

@@ -89,7 +89,7 @@ struct Errors {
 bool is_promised(const Draw& draw, const Validation& validation, const Task& task,
                  const Start& start) {
   return draw.sigmas_out <= task.particle_sigmas &&
-         tilt_of(draw.chain.start, task, start).norm_rad() <= validation.tilt_rad;
+         tilt_of(draw.chain.start, task, start).norm_rad() <= validation.held.tilt_rad;
 }
 
 Errors errors_of(const Validation& validation, const Task& task, const Start& start) {
@@ -123,7 +123,7 @@ void expect_good(const Task& task, const std::vector<std::uint8_t>& bytes,
   const bool turns = (task.coordinates >> 3U) != 0;
   EXPECT_LE(bytes.size(), turns ? 4096U : 2048U);
   // Draws have all of the task's tilt. Where that is more than the plan holds, it is what misses.
-  const bool all_tilt = draws.tilt_rad == tilts_to_hold(task).front();
+  const bool all_tilt = draws.held.tilt_rad == errors_to_hold(task).front().tilt_rad;
   EXPECT_GE(draws.at_goal_within(task.particle_sigmas),
             (all_tilt ? 0.95 : 0.9) * static_cast<double>(draws.within(task.particle_sigmas)));
   std::size_t promised = 0;
@@ -244,7 +244,7 @@ TEST(PlannedPeg, HoldsWhereTheSlotIsTurnedByAThousandth) {
   const Start& start = task.starts.front();
   const PlanReport report = planned(task, start, 2, kAllDraws);
   ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
-  EXPECT_EQ(report.validation.tilt_rad, task.tilt_rad);
+  EXPECT_EQ(report.validation.held.tilt_rad, task.tilt_rad);
   RolloutPool pool(sim::OdeRollout(task), 2);
   std::vector<JudgedStart> starts =
       drawn_starts(7, kAllDraws, DrawnPhysics::kEven, *report.plan, task, start, pool.front());
@@ -254,7 +254,7 @@ TEST(PlannedPeg, HoldsWhereTheSlotIsTurnedByAThousandth) {
     for (int axis = 3; axis < 6; ++axis) turn[axis] = 1e-3 * random.normal();
     one.particle.environment = environment_pose(turn, task.error_about_m);
   }
-  const Validation drawn{run_starts(*report.plan, task, starts, pool), {}, {}};
+  const Validation drawn{run_starts(*report.plan, task, starts, pool), {}, {}, {}};
   EXPECT_EQ(drawn.at_goal_within(task.particle_sigmas), drawn.within(task.particle_sigmas));
 }
 

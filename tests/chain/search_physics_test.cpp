@@ -84,7 +84,7 @@ void expect_only_tilts_missed(const PlanReport& report, const Task& task, Rollou
   std::vector<JudgedStart> levelled;
   for (const Draw& draw : report.validation.draws) {
     if (draw.at_goal) continue;
-    EXPECT_LT(report.validation.tilt_rad, task.tilt_rad);
+    EXPECT_LT(report.validation.held.tilt_rad, task.tilt_rad);
     const Start& start = start_of(*report.plan, task);
     EXPECT_GT(tilt_of(draw.chain.start, task, start).norm_rad(), 0.0);
     levelled.push_back({without_tilt(draw.chain.start, task, start), draw.sigmas_out});

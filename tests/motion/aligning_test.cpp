@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "shared/motion/admittance.h"
 #include "shared/ports/rollout.h"
@@ -20,8 +24,10 @@ constexpr std::int64_t kStep_us = 2000;
 /// A box before a wall at +x that is turned about z; only x, y and the turn yield.
 class Wall {
  public:
-  explicit Wall(double side_m = 0.1) {
-    task_.held = {{"part", Shape::Kind::kBox, {side_m, side_m, 0.1}, {}}};
+  /// @param aside_m by which the tool holds the part beside its middle
+  explicit Wall(double side_m = 0.1, double aside_m = 0.0) {
+    task_.held = {
+        {"part", Shape::Kind::kBox, {side_m, side_m, 0.1}, {{0.0, aside_m, 0.0}, {1, 0, 0, 0}}}};
     task_.environment = {
         {"wall", Shape::Kind::kBox, {0.1, 2.0, 0.1}, {{0.2, 0.0, 0.01}, {1, 0, 0, 0}}}};
     move_.compliance.compliant_axes = 0b100011;
@@ -64,6 +70,52 @@ TEST(Aligning, APartThatMeetsAWallAskewEndsFlatAgainstIt) {
       EXPECT_LT(result.move.peak_force_N, 20.0);
     }
   }
+}
+
+/// Where a part that was pressed askew rests, and by what lever it feels itself pressed there.
+struct Pressed {
+  double turned_rad = 0.0;
+  double lever_m = 0.0;
+};
+
+Pressed pressed_askew(double side_m, double aside_m, double sensor_m) {
+  Wall wall(side_m, aside_m);
+  Particle particle = wall.before(3.0 * kDegree, 0.0);
+  particle.physics.sensor_error_m.y() = sensor_m;
+  MoveParameters push = wall.push();
+  push.thresholds = with_press_torques(push.thresholds);
+  std::vector<TraceSample> trace;
+  const RolloutResult result = wall.run(particle, push, &trace);
+  EXPECT_TRUE(result.valid) << result.failure;
+  const Vector6& wrench = trace.back().input.wrench;
+  return {turn_of(result.move.pose), wrench[5] / wrench[0]};
+}
+
+// A sensor that is not where the arm takes it to be tells the torque about a point beside the
+// tool's tip: as if the part were held as much to the other side.
+TEST(Aligning, APartIsPressedFlatAboutWhereTheSensorIsTakenToBe) {
+  constexpr double kSide_m = 3e-3;
+  constexpr double kAside_m = 0.6e-3;
+  constexpr double kAlike_m = 0.05e-3;
+  const Pressed level = pressed_askew(kSide_m, 0.0, 0.0);
+  for (const double aside_m : {kAside_m, -kAside_m}) {
+    const Pressed far = pressed_askew(kSide_m, aside_m, 0.0);
+    EXPECT_GT(std::abs(far.lever_m - level.lever_m), 5.0 * kAlike_m);
+    EXPECT_NEAR(pressed_askew(kSide_m, aside_m, aside_m).lever_m, level.lever_m, kAlike_m);
+    EXPECT_NEAR(pressed_askew(kSide_m, 0.0, -aside_m).lever_m, far.lever_m, kAlike_m);
+  }
+}
+
+// A side that is hardly wider than what the sensor may be off does not lie flat for sure.
+TEST(Aligning, ANarrowSideStaysAskewWhereTheSensorIsOffByHalfOfIt) {
+  const auto left_rad = [](double side_m, double sensor_m) {
+    return std::abs(pressed_askew(side_m, 0.0, sensor_m).turned_rad - 3.0 * kDegree);
+  };
+  for (const double off_m : {0.0, 2e-3, -2e-3}) {
+    EXPECT_LT(left_rad(0.04, off_m), 0.1 * kDegree) << off_m;
+  }
+  EXPECT_LT(left_rad(6e-3, 0.0), 0.3 * kDegree);
+  EXPECT_GT(std::max(left_rad(6e-3, 2.5e-3), left_rad(6e-3, -2.5e-3)), 1.0 * kDegree);
 }
 
 // Without rotary compliance nothing of this happens.

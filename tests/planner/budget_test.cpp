@@ -8,18 +8,18 @@
 #include <utility>
 #include <vector>
 
+#include "planner/calibration_effort.h"
 #include "planner/search_moves.h"
-#include "planner/tilt_effort.h"
 #include "tests/planner/room_plan.h"
 
 namespace tenon::planner {
 namespace {
 
-TEST(TiltEffort, AnotherPathIsLookedForAsLongAsTheFirstTookOrAHundredRunsOfItWould) {
+TEST(CalibrationEffort, AnotherPathIsLookedForAsLongAsTheFirstTookOrAHundredRunsOfItWould) {
   constexpr std::size_t kSteps = 20;
   for (const std::uint64_t first : {100U, 5000U}) {
     const std::uint64_t allowed = first == 100U ? 100 * kSteps : first;
-    TiltEffort effort;
+    CalibrationEffort effort;
     effort.begin(0, {});
     effort.refute(false, kSteps, first);
     EXPECT_FALSE(effort.refuted()) << "not by a tilt";

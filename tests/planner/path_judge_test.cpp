@@ -115,22 +115,22 @@ TEST_F(PathJudgeTest, EveryCornerThatMissesIsToldBeforeAnythingElseIsAsked) {
 TEST_F(PathJudgeTest, ARefutationTellsWhetherItsStartWouldHaveMissedWithoutItsTilt) {
   Task tilting = task;
   tilting.tilt_rad = 2e-4;
-  const auto by_tilt = [&](const Rollout& rollout, double held_rad) {
+  const auto by_calibration = [&](const Rollout& rollout, double held_rad) {
     RolloutPool pool(rollout, 1);
     PathJudge judge(tilting, start, {}, pool, stopped_clock);
-    judge.hold_tilt(held_rad);
+    judge.hold({held_rad, 0.0});
     const Judgement judgement = judge.judge(path);
     const auto* refutation = std::get_if<Refutation>(&judgement);
-    return refutation == nullptr ? std::nullopt : std::optional(refutation->by_tilt);
+    return refutation == nullptr ? std::nullopt : std::optional(refutation->by_calibration);
   };
   WallRollout::World narrow = room();
   narrow.narrow_beyond_tilt_rad = 1e-4;
-  EXPECT_EQ(by_tilt(WallRollout(narrow), 2e-4), true);
-  EXPECT_EQ(by_tilt(WallRollout(narrow), 0.99e-4), std::nullopt) << "it holds";
+  EXPECT_EQ(by_calibration(WallRollout(narrow), 2e-4), true);
+  EXPECT_EQ(by_calibration(WallRollout(narrow), 0.99e-4), std::nullopt) << "it holds";
 
   const std::vector<JudgedStart> corners = corner_starts(plan, tilting, start, walls);
   ASSERT_GT(tilt_of(corners.back().particle, tilting, start).norm_rad(), 0.0);
-  EXPECT_EQ(by_tilt(HoledRollout({corners.back().particle.pose.position_m}), 2e-4), false);
+  EXPECT_EQ(by_calibration(HoledRollout({corners.back().particle.pose.position_m}), 2e-4), false);
 }
 
 TEST_F(PathJudgeTest, WhatHoldsAtItsSpeedsIsCertifiedForThoseAlone) {

@@ -235,14 +235,14 @@ TEST(Planner, WhatNoPlanBearsOfTheTiltIsToldAndHalfOfItHeldOrNone) {
     const PlanReport report = planned(task, world, options);
     ASSERT_EQ(report.status, PlanStatus::kPlanned) << report.reason;
     const Validation& validation = report.validation;
-    EXPECT_EQ(validation.tilt_rad, share * task.tilt_rad);
+    EXPECT_EQ(validation.held.tilt_rad, share * task.tilt_rad);
     EXPECT_EQ(arrived(validation.corners), validation.corners.size());
     EXPECT_EQ(validation.at_goal() < validation.draws.size(), share < 1.0)
         << "draws have all of it";
     // From the file alone the same is found.
     RolloutPool pool(WallRollout(world), 1);
     const Validation again = validate(*report.plan, task, task.starts.front(), kDrawsMin, pool);
-    EXPECT_EQ(again.tilt_rad, validation.tilt_rad);
+    EXPECT_EQ(again.held.tilt_rad, validation.held.tilt_rad);
     EXPECT_EQ(again.at_goal(), validation.at_goal());
     // It gives up in time, of half of the tilt later than of all: there is no end to looking for
     // walls that are not there.

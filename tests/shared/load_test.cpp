@@ -104,10 +104,13 @@ TEST(LoadTask, ReadsEveryValue) {
   EXPECT_EQ(task.friction.high, 0.6);
   EXPECT_EQ(task.oversize_m, 2.5e-4);
   EXPECT_EQ(task.tilt_rad, 3e-3);
+  EXPECT_EQ(task.sensor_error_m, 1e-3);
   EXPECT_EQ(task.rollout_step_us, 2000);
 
-  const std::string level = replaced(kTinyTask, "  oversize_m: 2.5e-4\n", "  tilt_rad: 0\n");
+  const std::string level =
+      replaced(kTinyTask, "  oversize_m: 2.5e-4\n", "  tilt_rad: 0\n  sensor_error_m: 5e-4\n");
   EXPECT_EQ(load_task(folder.put("level.yaml", level)).tilt_rad, 0.0);
+  EXPECT_EQ(load_task(folder.put("level.yaml", level)).sensor_error_m, 5e-4);
 
   // A fast tool gets a step in which it goes no further than 0.5 mm.
   const std::string fast = replaced(replaced(kTinyTask, "  rollout_step_s: 0.002\n", ""),
@@ -224,6 +227,8 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
        ":24: physics.oversize_m = 0.02, must be in [0, 0.01]"},
       {"rollout_step_s: 0.002", "tilt_rad: 0.06",
        ":25: physics.tilt_rad = 0.06, must be in [0, 0.05]"},
+      {"rollout_step_s: 0.002", "sensor_error_m: -0.001",
+       ":25: physics.sensor_error_m = -0.001, must be in [0, 0.02]"},
       {"rollout_step_s: 0.002", "rollout_step_s: 0.006",
        ":25: physics.rollout_step_s = 0.006, must be in [0.0001, 0.005]"},
       {"coordinates: [x, rz]", "coordinates: [x, rz",

@@ -132,7 +132,8 @@ void CompliantTool::show() {
   dBodySetTorque(body_, 0.0, 0.0, 0.0);
 }
 
-void CompliantTool::drive(const GuardedMove::Setpoint& setpoint, double step_s) {
+void CompliantTool::drive(const GuardedMove::Setpoint& setpoint, double step_s,
+                          const Vector3& torque_Nm) {
   drive_ = {setpoint, step_s, free_velocity_mps(setpoint, step_s), give_mpspN(step_s)};
   dBodySetLinearVel(body_, drive_.free_mps.x(), drive_.free_mps.y(), drive_.free_mps.z());
   const Vector6 error = displacement_between(pose(), setpoint.pose);
@@ -150,7 +151,7 @@ void CompliantTool::drive(const GuardedMove::Setpoint& setpoint, double step_s) 
     set(motor, of_axis(dParamCFM, axis % 3), drive.softness);
   }
   if (!turns_) return;
-  const Vector3 torque = compliance_.inertia_kgm2 * setpoint.acceleration.tail<3>();
+  const Vector3 torque = compliance_.inertia_kgm2 * setpoint.acceleration.tail<3>() + torque_Nm;
   dBodyAddTorque(body_, torque.x(), torque.y(), torque.z());
 }
 

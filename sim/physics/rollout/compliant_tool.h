@@ -67,7 +67,9 @@ class CompliantTool {
   /// Brings the body to where the part is, for collisions.
   void show();
   /// Sets the drive for the coming step of a shown body. Call before OdeWorld::step().
-  void drive(const GuardedMove::Setpoint& setpoint, double step_s);
+  /// @param torque_Nm that the tool yields to besides what contacts make, world axes
+  void drive(const GuardedMove::Setpoint& setpoint, double step_s,
+             const Vector3& torque_Nm = Vector3::Zero());
   /// Takes the tool to where the step has brought the body. Call after OdeWorld::step().
   void follow();
 

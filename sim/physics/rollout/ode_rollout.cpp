@@ -107,6 +107,7 @@ struct OdeRollout::Physics {
       scene.placed();
     }
     wrench.setZero();
+    sensor_error_m = particle.physics.sensor_error_m;
     known.reset();
   }
 
@@ -114,6 +115,7 @@ struct OdeRollout::Physics {
   double step(const GuardedMove::Setpoint& setpoint, double step_s, int halvings = kHalvingsMax) {
     if (!scene.has_solids()) return leap(setpoint, step_s);
     const CompliantTool::State before = tool.state();
+    const Vector6 wrench_before = wrench;
     const double depth_m = leap(setpoint, step_s);
     if (halvings == 0 || scene.clearance_m() > 0.0) return depth_m;
     tool.show();
@@ -121,6 +123,7 @@ struct OdeRollout::Physics {
     if (known->depth_max_m <= depth_m + kImpact_m) return depth_m;
     const Pose there = tool.part_pose();
     tool.return_to(before);
+    wrench = wrench_before;
     moved_from(there);
     (void)step(setpoint, 0.5 * step_s, halvings - 1);
     (void)step(setpoint, 0.5 * step_s, halvings - 1);
@@ -166,7 +169,8 @@ struct OdeRollout::Physics {
   void solve(const GuardedMove::Setpoint& setpoint, double step_s) {
     const Pose before = tool.part_pose();
     scene.make_joints(world, step_s, law);
-    tool.drive(setpoint, step_s);
+    // The force hardly changes within a step, and next to the damping it turns the tool by little.
+    tool.drive(setpoint, step_s, imagined_Nm());
     world.step(step_s);
     tool.follow();
     wrench = scene.wrench();
@@ -183,6 +187,18 @@ struct OdeRollout::Physics {
     scene.moved(most_m);
   }
 
+  /// About the tool, by the force at its lever to where the arm takes the sensor to be.
+  [[nodiscard]] Vector3 imagined_Nm() const {
+    if (sensor_error_m.isZero(0.0)) return Vector3::Zero();
+    return Vector3(wrench.head<3>()).cross(tool.pose().orientation * sensor_error_m);
+  }
+  /// The wrench about the tool as the arm has it from its sensor.
+  [[nodiscard]] Vector6 felt() const {
+    Vector6 felt = wrench;
+    if (!sensor_error_m.isZero(0.0)) felt.tail<3>() += imagined_Nm();
+    return felt;
+  }
+
   OdeWorld world;
   Scene scene;
   bool sampled;
@@ -193,6 +209,7 @@ struct OdeRollout::Physics {
   LateView view;
   bool turning = true;
   Vector6 wrench = Vector6::Zero();
+  Vector3 sensor_error_m = Vector3::Zero();
 };
 
 OdeRollout::OdeRollout(const Task& task, MeshDistances distances)
@@ -223,7 +240,7 @@ RolloutResult OdeRollout::simulate(const Particle& particle, const MoveParameter
       return result;
     }
     input.time_ns += step_us * kMicrosecond_ns;
-    p.view.pass(p.tool.pose(), p.wrench, input);
+    p.view.pass(p.tool.pose(), p.felt(), input);
   }
   if (ode_messages() != messages_before) {
     result.failure = "the contact solver did not converge";

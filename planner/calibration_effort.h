@@ -1,6 +1,6 @@
 #pragma once
-// For how long plans are looked for that bear one tilt, in simulated moves, before a smaller one is
-// all that is held. One thread.
+// For how long plans are looked for that bear what calibration leaves, in simulated moves, before
+// less is all that is held. One thread.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace tenon::planner {
 
-class TiltEffort {
+class CalibrationEffort {
  public:
   /// From now on a smaller tilt is held, if any was held before, and looked for kMoreForLess times
   /// as long: there is less and less to give up instead.
@@ -26,9 +26,9 @@ class TiltEffort {
     paths_ = 0;
   }
 
-  /// A path was refuted. @param by_tilt see Refutation  @param steps of the path
-  void refute(bool by_tilt, std::size_t steps, std::uint64_t moves) {
-    if (!by_tilt) return;
+  /// A path was refuted. @param by_calibration see Refutation  @param steps of the path
+  void refute(bool by_calibration, std::size_t steps, std::uint64_t moves) {
+    if (!by_calibration) return;
     if (allowed_ == 0) allowed_ = std::max<std::uint64_t>(moves - began_at_, kRunsOfAPath * steps);
     refuted_at_ = moves;
     ++paths_;
