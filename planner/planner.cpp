@@ -83,7 +83,7 @@ class Planning {
       errors_.hold(errors);
       round_ = 0;
       if (found(start, attractors)) return improve(), ended(PlanStatus::kPlanned, "");
-      const bool less_may = effort_.refuted() || errors.sensor_error_m > 0.0;
+      const bool less_may = effort_.refuted() || (errors.sensor_error_m > 0.0 && !is_baseline());
       if (!less_may || out_of_time() || out_of_moves()) break;
     }
     if (!report_.search.has_path) return without_path();
@@ -94,9 +94,9 @@ class Planning {
   /// Guides followed to the letter, or a search along them. @return whether there is a plan
   bool found(const Belief& start, const Attractors& attractors) {
     searched_->begin_from(start);
-    const bool in_turn = !attractors.turns.empty() || errors_.felt_less();
+    const bool in_turn = !is_baseline() && task_.motion.carried_axes;
     if (in_turn && followed_in_turn(attractors)) return true;
-    if (errors_.less_may_be_felt()) return false;
+    if (in_turn && errors_.less_may_be_felt()) return false;
     searched_->begin_from(start);
     const auto enough = [this] {
       return !is_baseline() && effort_.searched(succ_.counters()) >= kFirstMoves;

@@ -230,6 +230,18 @@ TEST(TouchTurns, PlainOnesArePlainInThePlan) {
   EXPECT_FALSE(report.plan->parameter_sets.back().aligns);
 }
 
+// A sensor that may be off has them looked for anew, but not for a planner that has no guides.
+TEST(TouchTurns, AreNothingForABaseline) {
+  Turns turns(0.04);
+  turns.task.sensor_error_m = 1e-3;
+  PlannerOptions options;
+  options.method = PlanMethod::kContactGreedy;
+  options.moves_max = 2000;
+  const PlanReport report = make_plan(turns.task, turns.start, BlockRollout(0.04), options);
+  EXPECT_EQ(report.guide, "");
+  EXPECT_GT(report.search_moves.rollouts, 0U);
+}
+
 TEST(TouchTurns, AreFollowedByTheTruePhysicsWhereTheOtherHadAKnownStartWrong) {
   const Turns turns(0.04);
   const BlockRollout truth(0.04);
