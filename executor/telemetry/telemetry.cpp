@@ -120,7 +120,7 @@ void Telemetry::publish_status(const CycleRecord& record) {
   message.brakes_unwatched = static_cast<std::int32_t>(record.brakes_unwatched);
   if (bus_.traffic) {
     const CanBusTraffic traffic = bus_.traffic();
-    const std::int64_t now_ns = monotonic_now_ns();
+    const std::int64_t now_ns = bus_.now_ns();
     const bool first = traffic_read_ns_ == 0;
     tell_bus(traffic, traffic_told_,
              first ? 0.0 : 1e-9 * static_cast<double>(now_ns - traffic_read_ns_), bitrate_bps_,

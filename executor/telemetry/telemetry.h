@@ -18,6 +18,7 @@
 #include "executor/telemetry/run_result.h"
 #include "shared/cell/cell.h"
 #include "shared/ports/can_bus.h"
+#include "shared/system/monotonic_clock.h"
 
 namespace lcm {
 class LCM;
@@ -48,6 +49,7 @@ struct TelemetryOutputs {
 struct BusView {
   std::function<CanBusTraffic()> traffic{};  ///< called on the recorder's thread; empty: not known
   double load_most = 1.0;                    ///< fraction of the bus that its frames may take
+  std::function<std::int64_t()> now_ns = monotonic_now_ns;  ///< what its rates are taken by
 };
 
 class Telemetry : public RecordConsumer {

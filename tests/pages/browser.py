@@ -24,13 +24,18 @@ class BrowserError(Exception):
     """What the browser refused, or never answered."""
 
 
+def program():
+    """Where Chromium is."""
+    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if not found:
+        raise BrowserError("no Chromium here; `.ci/setup.sh test` installs it")
+    return found
+
+
 class Browser:
     """Used with `with`. @param webgl: without it pages find none, as on a machine that has none"""
 
     def __init__(self, webgl=True):
-        program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-        if not program:
-            raise BrowserError("no Chromium here; `.ci/setup.sh test` installs it")
         self.profile = tempfile.TemporaryDirectory(prefix="tenon_chromium_")
         to_browser, self.writing = os.pipe()
         self.reading, from_browser = os.pipe()
@@ -46,7 +51,7 @@ class Browser:
 
         graphics = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
         self.process = subprocess.Popen(
-            [program, "--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--no-first-run",
+            [program(), "--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--no-first-run",
              "--disable-extensions", "--hide-scrollbars", f"--user-data-dir={self.profile.name}",
              "--disable-background-networking", "--disable-dev-shm-usage",
              *(graphics if webgl else ["--disable-3d-apis"]), "about:blank"],

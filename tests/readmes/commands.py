@@ -66,11 +66,11 @@ BY_TEST = {
     "tenon-exec --cell hw/cells/gantry3.yaml --plan plan.tnp --can slcan://127.0.0.1:29536 --log run.lcmlog "
     "--json result.json": "readmes.TheVirtualArmAndItsExecutor",
     "tenon-monitor": "monitor.TheDashboardBesideARealRun",
-    "tenon-plan --new-task plug.stl socket.obj --uniform-mm 2 -o task.yaml": "chain.Assemblies",
-    "tenon-plan task.yaml -o plan.tnp": "chain.Assemblies",
+    "tenon-plan --new-task plug.stl socket.obj --uniform-mm 2 -o task.yaml": "planning.Assemblies",
+    "tenon-plan task.yaml -o plan.tnp": "planning.Assemblies",
     "tenon-evaluate --cell cell.yaml --task task.yaml --plan plan.tnp --experiment worlds.yaml -n 200 --seed 1 "
     "--junit evaluation.xml --min-success 0.99": "schemas.TheJunitFileIsWhatCiToolsRead",
-    "sim/experiments/assemblies.sh FOLDER": "chain.Assemblies",
+    "sim/experiments/assemblies.sh FOLDER": "planning.Assemblies",
 }
 # (pattern, reason)
 EXEMPT = [

@@ -18,7 +18,6 @@
 #include "executor/telemetry/telemetry.h"
 #include "hw/arm/describe_fault.h"
 #include "shared/config/load.h"
-#include "shared/system/monotonic_clock.h"
 #include "sim/cell/faults/fault_spec.h"
 #include "tests/support/places.h"
 #include "tests/support/whole_run.h"
@@ -33,12 +32,17 @@ class Drained final : public executor::CycleSink {
   explicit Drained(executor::Recorder& recorder) : recorder_(recorder) {}
 
   void record(const executor::CycleRecord& record) noexcept override {
+    now_ns_ = record.time_ns;
     recorder_.record(record);
     recorder_.drain();
   }
 
+  /// Of the cycle that was recorded last.
+  [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
+
  private:
   executor::Recorder& recorder_;
+  std::int64_t now_ns_ = 0;
 };
 
 /// How late the loop wakes: by more than a period once in about two seconds.
@@ -57,9 +61,10 @@ void write_run(const std::filesystem::path& folder, const std::string& name,
   tests::WholeRun run(cell, task, plan, options, &sink);
   std::vector<std::string> warnings;
   executor::BusView bus;
-  // Rates are told by the wall's clock, which virtual time has no part in.
-  bus.traffic = [&cell] {
-    const double bits = 1e-9 * static_cast<double>(monotonic_now_ns()) * cell.robot.bitrate_bps;
+  // In virtual time, so that the page of a run is the same byte for byte whenever it is made.
+  bus.now_ns = [&sink] { return sink.now_ns(); };
+  bus.traffic = [&cell, &sink] {
+    const double bits = 1e-9 * static_cast<double>(sink.now_ns()) * cell.robot.bitrate_bps;
     CanBusTraffic traffic;
     traffic.nominal_bits = static_cast<std::uint64_t>(0.4 * bits);
     traffic.worst_bits = static_cast<std::uint64_t>(0.5 * bits);

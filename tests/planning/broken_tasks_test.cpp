@@ -48,7 +48,7 @@ std::string first_line(const Ended& ended) {
 }
 
 TEST(BrokenTasks, TheFirstLineOfTheCheckNamesTheCause) {
-  const YAML::Node document = YAML::LoadFile(in_tree("tests/chain/broken_tasks.yaml"));
+  const YAML::Node document = YAML::LoadFile(in_tree("tests/planning/broken_tasks.yaml"));
   const auto task = document["task"].as<std::string>();
   const ScratchFolder folder;
   for (const YAML::Node& broken : document["broken"]) {
@@ -67,7 +67,7 @@ TEST(BrokenTasks, TheFirstLineOfTheCheckNamesTheCause) {
 }
 
 TEST(BrokenTasks, TheTaskThatTheyBreakIsWhole) {
-  const YAML::Node document = YAML::LoadFile(in_tree("tests/chain/broken_tasks.yaml"));
+  const YAML::Node document = YAML::LoadFile(in_tree("tests/planning/broken_tasks.yaml"));
   const ScratchFolder folder;
   const std::string file = folder.put("task.yaml", document["task"].as<std::string>());
   const Ended ended = run(folder, {executable("tenon-plan"), "--check", file});
@@ -89,7 +89,7 @@ TEST(BrokenTasks, NothingStandsAgainstAnyTaskThatShips) {
 }
 
 TEST(BrokenTasks, ThePageOfACheckHoldsAllThatItsLinesSay) {
-  const YAML::Node document = YAML::LoadFile(in_tree("tests/chain/broken_tasks.yaml"));
+  const YAML::Node document = YAML::LoadFile(in_tree("tests/planning/broken_tasks.yaml"));
   const ScratchFolder folder;
   const std::string file = folder.put("task.yaml", document["task"].as<std::string>());
   const std::string page = (folder.path() / "task.html").string();
