@@ -55,6 +55,7 @@ SurfaceContact::SurfaceContact(const Surface& held, const Surface& environment) 
     side->points.resize(side->edges->points_m().size());
     side->balls.resize(side->edges->balls().size());
     side->apart_until_m.resize(side->edges->pieces().size());
+    side->at_least_tells.resize(side->edges->pieces().size());
   }
   forget();
 }
@@ -64,6 +65,7 @@ void SurfaceContact::forget() {
     side->near.clear();
     side->complete_until_m = 0.0;
     std::fill(side->apart_until_m.begin(), side->apart_until_m.end(), 0.0);
+    std::fill(side->at_least_tells.begin(), side->at_least_tells.end(), true);
     std::fill(side->balls.begin(), side->balls.end(), Side::Ball{});
   }
 }
@@ -148,8 +150,11 @@ std::optional<double> SurfaceContact::distance_at_least_m(Side& side, std::uint3
 
 double SurfaceContact::look_at(Side& side, std::uint32_t index, const Pose& X_SE,
                                const Stand& stand) {
-  const auto at_least_m = distance_at_least_m(side, index, X_SE);
-  if (at_least_m && *at_least_m > stand.offset_m) return *at_least_m - stand.offset_m;
+  if (side.at_least_tells[index]) {
+    const auto at_least_m = distance_at_least_m(side, index, X_SE);
+    if (at_least_m && *at_least_m > stand.offset_m) return *at_least_m - stand.offset_m;
+    side.at_least_tells[index] = false;
+  }
   const Surface& edges = *side.edges;
   const Surface::Piece& piece = edges.pieces()[index];
   const bool held = &side == &held_;

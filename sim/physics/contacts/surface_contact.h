@@ -40,6 +40,9 @@ class SurfaceContact {
     std::vector<std::uint32_t> near;    ///< pieces
     double complete_until_m = 0.0;      ///< what is not in `near` touches nothing before
     std::vector<double> apart_until_m;  ///< of every piece: not to be looked at before
+    /// Of every piece: what its distance is no less than was not too little the last time. What
+    /// touches, touches on: asking had been in vain 199 times of 200.
+    std::vector<bool> at_least_tells;
     /// What is known of a ball around pieces.
     struct Ball {
       double far_until_m = 0.0;   ///< what is in it touches nothing before
