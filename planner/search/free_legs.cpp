@@ -55,6 +55,14 @@ std::vector<FreeLegs::Legs> FreeLegs::candidates(const Vector6& way, const Pose&
   const Vector6 shift = way - turn;
   std::vector<Legs> all;
   add(all.emplace_back(), shift);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector6 along = shift[axis] * Vector6::Unit(axis);
+    for (const bool first : {true, false}) {
+      Legs& legs = all.emplace_back();
+      add(legs, first ? along : shift - along);
+      add(legs, first ? shift - along : along);
+    }
+  }
   std::array<int, 3> order = {0, 1, 2};
   do {
     Legs& legs = all.emplace_back();
@@ -70,9 +78,15 @@ std::vector<FreeLegs::Legs> FreeLegs::candidates(const Vector6& way, const Pose&
     add(legs, across);
     add(legs, (shift[axis] - clear[axis]) * Vector6::Unit(axis));
   }
-  // Turned where it was free before.
+  // Turned on the first leg, or before it, where it was free before.
   if (turn.norm() > kNoLeg) {
+    const std::vector<Legs> straight = all;
     for (Legs& legs : all) legs.insert(legs.begin(), turn);
+    for (Legs legs : straight) {
+      if (legs.empty()) continue;
+      legs.front() += turn;
+      all.push_back(std::move(legs));
+    }
   }
   std::stable_sort(all.begin(), all.end(), [](const Legs& a, const Legs& b) {
     return std::pair(a.size(), length(a)) < std::pair(b.size(), length(b));

@@ -22,8 +22,9 @@ class FreeLegs {
       : task_(task), part_(around(task.held)), clear_(clear), rollout_(rollout), reach_(reach) {}
 
   /// At most four straight legs from the belief's mean to a place, task axes, m and rad, of which
-  /// none brings any corner of the spread into a collision; as few as there are, then as short.
-  /// What turns may add to a corner counts as way to it. Empty: none lead there.
+  /// none brings any corner of the spread into a collision; as few as there are, then as short. All
+  /// turning is done on the first. What turns may add to a corner counts as way to it. Empty: none
+  /// lead there.
   /// @param arm where it may be with the belief; null: no arm is asked
   [[nodiscard]] std::optional<std::vector<Vector6>> to(const BeliefSummary& belief,
                                                        const Pose& place,

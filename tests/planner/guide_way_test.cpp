@@ -92,6 +92,36 @@ TEST(FreeLegs, GoStraightWhereNothingIsInTheWayAndAroundWhatIs) {
   EXPECT_FALSE(FreeLegs(task, at(0.0, 0.0, 0.1), high).to(from, place));
 }
 
+TEST(FreeLegs, TurnOnTheWay) {
+  Task task = own_room_task();
+  task.coordinates = task.compliance.compliant_axes = 0b111111;
+  BeliefSummary from;
+  from.mean = at(-0.05, 0.0, 0.0);
+  Pose place = at(0.05, 0.01, 0.0);
+  place.orientation = Eigen::AngleAxisd(0.02, Vector3::UnitX());
+  Block nothing({1.0, 1.0, 1.0}, {2.0, 2.0, 2.0});
+  const auto straight = FreeLegs(task, at(0.0, 0.0, 0.1), nothing).to(from, place);
+  ASSERT_TRUE(straight);
+  ASSERT_EQ(straight->size(), 1U);
+  EXPECT_TRUE(straight->front().head<4>().isApprox(Eigen::Vector4d(0.1, 0.01, 0.0, 0.02)));
+  // Where nothing else is left to do, too.
+  place.position_m = from.mean.position_m;
+  EXPECT_EQ(FreeLegs(task, at(0.0, 0.0, 0.1), nothing).to(from, place)->size(), 1U);
+}
+
+TEST(FreeLegs, GoAlongTwoAxesAtOnceWhereOnlyTheThirdHasToWait) {
+  Task task = own_room_task();
+  task.coordinates = task.compliance.compliant_axes = 0b111;
+  BeliefSummary from;
+  from.mean = at(-0.05, 0.0, 0.0);
+  Block step({-0.2, -0.2, -0.2}, {0.03, 0.2, -0.01});
+  const auto legs = FreeLegs(task, at(0.0, 0.0, 0.1), step).to(from, at(0.05, 0.02, -0.05));
+  ASSERT_TRUE(legs);
+  ASSERT_EQ(legs->size(), 2U);
+  EXPECT_TRUE(legs->front().head<3>().isApprox(Vector3(0.1, 0.02, 0.0)));
+  EXPECT_TRUE(stays_free(step, from, *legs));
+}
+
 TEST(FreeLegs, LeaveRoomForTheSpread) {
   Task task = own_room_task();
   task.coordinates = 0b111;
