@@ -58,6 +58,7 @@ class Planning {
                now_s_),
         errors_(task) {
     report_.method = options.method;
+    judge_.stop_when([this] { return !report_.plan && out_of_time(); });
     for (RolloutPool* pool : {&pool_, &search_pool_}) {
       if (options.progress) pool->after_each_move([this] { tell_if_silent(); });
     }
@@ -67,9 +68,8 @@ class Planning {
   PlanReport run() {
     const std::string overlap = collision(task_, start_, pool_.front());
     if (!overlap.empty()) return ended(PlanStatus::kInCollision, overlap);
-    if (const std::string beyond = enter_reach(); !beyond.empty()) {
-      return ended(PlanStatus::kOutOfReach, beyond);
-    }
+    const std::string beyond = enter_reach();
+    if (!beyond.empty()) return ended(PlanStatus::kOutOfReach, beyond);
     const Belief start = held(start_belief(task_, start_, options_.method));
     if (at_goal(summarise(start, task_), task_)) {
       return ended(PlanStatus::kAlreadyAtGoal, already_at_goal(start_));
@@ -86,7 +86,7 @@ class Planning {
       const bool less_may = effort_.refuted() || (errors.sensor_error_m > 0.0 && !is_baseline());
       if (!less_may || out_of_time() || out_of_moves()) break;
     }
-    if (!report_.search.has_path) return without_path();
+    if (!report_.search.has_path || out_of_time()) return without_path();
     return ended(PlanStatus::kNotCertified, every_path_refuted(report_, options_.rounds_max));
   }
 
@@ -102,9 +102,8 @@ class Planning {
       return !is_baseline() && effort_.searched(succ_.counters()) >= kFirstMoves;
     };
     if (searched([&] { return out_of_budget() || enough(); })) return true;
-    const std::vector<Guide>& guides = attractors.candidates;
-    return enough() && (std::any_of(guides.begin(), guides.end(),
-                                    [this](const Guide& guide) { return leads(guide); }) ||
+    const auto led = [this](const Guide& guide) { return leads(guide); };
+    return enough() && (std::ranges::any_of(attractors.candidates, led) ||
                         searched([this] { return out_of_budget(); }));
   }
 
@@ -147,12 +146,11 @@ class Planning {
   }
 
   Attractors guides_from(const Belief& start) {
+    const auto stop = [this] { return out_of_budget(); };
+    const auto turns = [this] { return touched_in_turn(corners()); };
     Attractors attractors = timed(now_s_, report_.times.attractors_s, [&] {
-      return is_baseline()
-                 ? Attractors{{}, {}, goal_attractors(task_, start, long_succ_), 0, {}}
-                 : find_attractors(
-                       task_, start, long_succ_, pool_.front(), [this] { return out_of_budget(); },
-                       [this] { return touched_in_turn(corners()); });
+      return is_baseline() ? Attractors{{}, {}, goal_attractors(task_, start, long_succ_), 0, {}}
+                           : find_attractors(task_, start, long_succ_, pool_.front(), stop, turns);
     });
     report_.guides = attractors.guides.size();
     report_.heuristics = heuristic_names(attractors.guides);
@@ -197,8 +195,8 @@ class Planning {
 
   std::vector<Guide> guides_in_turn(const Belief& starts) {
     doing_ = "looking for guides";
-    std::vector<Guide> guides =
-        timed(now_s_, report_.times.attractors_s, [&] { return touched_in_turn(starts); });
+    const auto touched = [&] { return touched_in_turn(starts); };
+    std::vector<Guide> guides = timed(now_s_, report_.times.attractors_s, touched);
     progress_.tell(guides_found(guides, long_succ_.counters().rollouts));
     return guides;
   }
@@ -214,6 +212,7 @@ class Planning {
         keep(std::move(*judged), path, report_.search);
         return true;
       }
+      if (std::holds_alternative<Undecided>(judgement)) return false;
       learn(std::get<Refutation>(judgement));
     }
     return false;
@@ -223,9 +222,9 @@ class Planning {
   /// one that was, and did otherwise than the search had it, makes the next tries go by what
   /// judges.
   bool leads(const Guide& guide) {
-    doing_ = "following guides";
     SuccessorEngine* succ = &succ_;
     for (int tries = 0; tries < kTriesAGuide && !out_of_budget(); ++tries) {
+      doing_ = "following guides";
       std::string left;
       const auto way = timed(now_s_, report_.times.search_s, [&] {
         return follow_guide(guide, task_, searched_->start(), start_.pose, *succ, pool_.front(),
@@ -233,12 +232,14 @@ class Planning {
       });
       progress_.tell(way ? guide_followed(guide, way->moves.size()) : guide_left(guide, left));
       if (!way) return false;
+      doing_ = "judging a way";
       Judgement judgement = judge_.judge(way->moves, PathJudge::Misses::kAll, way->plain);
       if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
         report_.guide = guide_text(guide);
         keep(std::move(*judged), way->moves, SearchResult{});
         return true;
       }
+      if (std::holds_alternative<Undecided>(judgement)) return false;
       const auto& refutation = std::get<Refutation>(judgement);
       effort_.refute(refutation.by_calibration, way->moves.size(), moves_simulated());
       const std::size_t fresh = searched_->add_starts(refutation);
@@ -269,8 +270,8 @@ class Planning {
 
   void learn(const Refutation& refutation) {
     effort_.refute(refutation.by_calibration, report_.search.path.size(), moves_simulated());
-    const auto refused_step = searched_->learn(refutation, report_.search.path);
-    report_.refusals.push_back(lesson(refutation, refused_step));
+    const auto step = searched_->learn(refutation, report_.search.path);
+    report_.refusals.push_back(lesson(refutation, step));
     report_.rounds.back().outcome = "refuted: " + report_.refusals.back();
     progress_.tell("refuted: " + report_.refusals.back());
   }
@@ -392,8 +393,7 @@ class Planning {
 
 PlanReport make_plan(const Task& task, const Start& start, const Rollout& rollout,
                      const PlannerOptions& options, const ClockSeconds& now_s) {
-  const std::unique_ptr<Rollout> physics = rollout.clone();
-  const Task certain = with_goal_certainty(task, *physics);
+  const Task certain = with_goal_certainty(task, *rollout.clone());
   return Planning(certain, start, rollout, options, now_s).run();
 }
 

@@ -1,5 +1,7 @@
 #include "planner/judge/path_judge.h"
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -17,6 +19,8 @@ namespace {
 constexpr int kSpeedAttempts = 2;
 // Of the tilt that a plan holds: most cells have no more.
 constexpr double kUsualTilt = 0.5;
+// So many starts are run before somebody is asked whether to go on.
+constexpr std::size_t kAtOnce = 64;
 // How often envelopes may be widened to more draws.
 constexpr std::uint64_t kEnvelopeBatches = 4;
 
@@ -46,6 +50,19 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses
                            std::span<const std::size_t> plain) {
   missed_.clear();
   misses_ = misses;
+  try {
+    return judged(displacements, plain);
+  } catch (const Stopped&) {
+    return Undecided{};
+  }
+}
+
+void PathJudge::stop_if_asked() const {
+  if (stop_ && stop_()) throw Stopped{};
+}
+
+Judgement PathJudge::judged(std::span<const Vector6> displacements,
+                            std::span<const std::size_t> plain) {
   Plan slow = draft_plan(task_, start_, parameters_.assumptions, displacements, plain);
   slow.method = parameters_.method;
   if (slow.method == PlanMethod::kMha) {
@@ -53,11 +70,11 @@ Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses
         run(slow, screening_starts(slow, held_, start_, pool_.front()), effort_.corners);
     if (missed_draw(looked, task_.particle_sigmas) != nullptr) {
       // Else the first of all corners that misses, which these are some of.
-      return *missed(slow, misses == Misses::kAll ? looked : corners_of(slow));
+      return *missed(slow, misses_ == Misses::kAll ? looked : corners_of(slow));
     }
     Judgement judgement = at_once(slow, good_chains(looked));
     if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
-    if (misses == Misses::kAll) {
+    if (misses_ == Misses::kAll) {
       if (auto again = misses_again(slow)) return *std::move(again);
     }
   }
@@ -217,6 +234,7 @@ Judgement PathJudge::estimated(Plan plan, Certification certification, const Ext
 }
 
 Certification PathJudge::certified(const Plan& plan) {
+  stop_if_asked();
   Certification result = timed(now_s_, effort_.certification.time_s, [&] {
     return certify(encode_plan(plan), task_, pool_, CertificationExtent::kToFirstRefutation);
   });
@@ -289,9 +307,18 @@ std::vector<Draw> PathJudge::run_to_miss(const Plan& plan, std::span<const Judge
 
 std::vector<Draw> PathJudge::run(const Plan& plan, std::span<const JudgedStart> starts,
                                  Effort& effort, const std::function<bool(const Draw&)>& until) {
-  std::vector<Draw> draws =
-      timed(now_s_, effort.time_s, [&] { return run_starts(plan, task_, starts, pool_, until); });
-  for (const Draw& draw : draws) effort.moves += draw.chain.steps.size();
+  std::vector<Draw> draws;
+  while (!starts.empty()) {
+    stop_if_asked();
+    const std::span<const JudgedStart> some = starts.first(std::min(kAtOnce, starts.size()));
+    starts = starts.subspan(some.size());
+    std::vector<Draw> ran =
+        timed(now_s_, effort.time_s, [&] { return run_starts(plan, task_, some, pool_, until); });
+    for (const Draw& draw : ran) effort.moves += draw.chain.steps.size();
+    const bool ended = until && until(ran.back());
+    std::move(ran.begin(), ran.end(), std::back_inserter(draws));
+    if (ended) break;
+  }
   return draws;
 }
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -33,7 +34,10 @@ struct JudgedPlan {
   Validation estimate;  ///< as validate() would say of the plan
 };
 
-using Judgement = std::variant<JudgedPlan, Refutation>;
+/// There was no time to tell.
+struct Undecided {};
+
+using Judgement = std::variant<JudgedPlan, Refutation, Undecided>;
 
 /// Of one task and start. One thread at a time; the pool starts its own.
 class PathJudge {
@@ -54,6 +58,9 @@ class PathJudge {
 
   /// From now on starts refute that have up to these errors; at first, all of the task's.
   void hold(const CalibrationErrors& errors) { held_ = holding(task_, errors); }
+
+  /// @param stop asked every few hundred moves: whether to leave a path undecided
+  void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
 
   /// What of the starts at the corners a refutation tells.
   enum class Misses : std::uint8_t {
@@ -83,6 +90,12 @@ class PathJudge {
     Certification certification;
   };
 
+  /// Stops a judgement.
+  struct Stopped {};
+
+  [[nodiscard]] Judgement judged(std::span<const Vector6> displacements,
+                                 std::span<const std::size_t> plain);
+  void stop_if_asked() const;
   /// Certified, and if it holds with its last move centred, where that holds as well.
   [[nodiscard]] Candidate centred(Plan plan, Certification certification);
   /// Plain, fast and centred, at its end and on the way in, by what chains at contact speed show,
@@ -128,6 +141,7 @@ class PathJudge {
   Parameters parameters_;
   RolloutPool& pool_;
   ClockSeconds now_s_;
+  std::function<bool()> stop_{};
   JudgeEffort effort_;
   Misses misses_ = Misses::kFirst;
   std::vector<JudgedStart> missed_;  ///< by the path that is judged

@@ -113,6 +113,30 @@ TEST(Budget, AMoveLimitThatSufficesLeavesThePlanAsItIs) {
   EXPECT_EQ(within_moves(moves_of(free), 1).bytes, free.bytes);
 }
 
+// Judging is most of the work: who had said how long to plan for had waited for all of it.
+TEST(Budget, TheTimeLimitHoldsWhileAPathIsJudgedToo) {
+  Task task = room_task();
+  const auto now_s = std::make_shared<double>(0.0);
+  const auto plan = [&] {
+    *now_s = 0.0;
+    return make_plan(task, task.starts.front(), SlowRollout(1.0, now_s), PlannerOptions{},
+                     [&] { return *now_s; });
+  };
+  task.time_limit_s = 1e6;
+  const PlanReport free = plan();
+  ASSERT_EQ(free.status, PlanStatus::kPlanned) << free.reason;
+  ASSERT_GT(free.judging.moves(), 1000U);
+
+  task.time_limit_s = *now_s - 0.5 * static_cast<double>(free.judging.moves());
+  const PlanReport limited = plan();
+  EXPECT_EQ(limited.status, PlanStatus::kTimeLimit);
+  EXPECT_NE(limited.reason.find("raise --time-limit"), std::string::npos) << limited.reason;
+  EXPECT_FALSE(limited.plan.has_value());
+  EXPECT_GE(*now_s, task.time_limit_s);
+  // What is begun at once: some dozens of starts.
+  EXPECT_LE(*now_s, task.time_limit_s + 64.0 * static_cast<double>(free.plan->steps.size()));
+}
+
 // clock    0 ....... 0.35 ....... 0.7 ....... 1.05 s   each rollout takes 0.35 s
 // told                                         ^ silent for a second
 TEST(Budget, ProgressIsNeverSilentForTwoSeconds) {

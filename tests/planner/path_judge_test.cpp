@@ -63,6 +63,15 @@ class PathJudgeTest : public ::testing::Test {
   std::vector<Vector6> path;
 };
 
+TEST_F(PathJudgeTest, WhoIsAskedToStopDecidesNothingAndCanBeAskedAgain) {
+  RolloutPool pool(walls, 1);
+  PathJudge judge = judge_in(pool);
+  int until = 3;
+  judge.stop_when([&until] { return until-- == 0; });
+  EXPECT_TRUE(std::holds_alternative<Undecided>(judge.judge(path)));
+  EXPECT_TRUE(std::holds_alternative<JudgedPlan>(judge.judge(path)));
+}
+
 // In the last corner, where certification has no particle: both errors are off.
 TEST_F(PathJudgeTest, AStartThatAPathHasMissedIsRunFirstThroughItsVariants) {
   const std::vector<JudgedStart> corners = corner_starts(plan, task, start, walls);
