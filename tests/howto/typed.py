@@ -20,7 +20,7 @@ import time
 
 ATTEMPTS = 10
 # Where the virtual arm got no time, the executor hears nobody.
-EXCUSES = {"overruns", "blind", "bus_silent", "feedback_missing"}
+EXCUSES = {"overruns", "blind", "bus_silent", "feedback_missing", "feedback_poor"}
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.M | re.S)
 
 

@@ -18,7 +18,7 @@ import time
 from commands import BLOCK, commands_of
 
 # A run that ends so may tell of a machine that gave executor or arm no time; as tests/support/busy_machine.cpp has them.
-BUSY = {"overruns", "blind", "bus_silent", "feedback_missing"}
+BUSY = {"overruns", "blind", "bus_silent", "feedback_missing", "feedback_poor"}
 ATTEMPTS = 10
 
 

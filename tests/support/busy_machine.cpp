@@ -11,7 +11,8 @@ namespace tenon::tests {
 bool Attempts::again(const nlohmann::json& result) {
   constexpr int kMost = 10;
   // Where the virtual arm got none, the executor hears nobody.
-  const std::set<std::string> excuses = {"overruns", "blind", "bus_silent", "feedback_missing"};
+  const std::set<std::string> excuses = {"overruns", "blind", "bus_silent", "feedback_missing",
+                                         "feedback_poor"};
   const std::string reason = result.value("arm_fault", result.value("reason", ""));
   if (!excuses.contains(reason) || made_ == kMost) return false;
   std::printf("attempt %d: the machine was too busy: %s\n", made_,
