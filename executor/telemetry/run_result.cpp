@@ -160,6 +160,13 @@ void conclude(RunResult& result, const ControlTask& task, bool success) {
   result.exit_code = success && result.disable_confirmed && brakes_seen ? 0 : 1;
 }
 
+/// What the arm's fault ended, the run or its being held. Null: nothing.
+const FaultRow* arms_part(const RunResult& result) {
+  const bool ended_it = result.reason == EndReason::kArmFault || result.hold == Hold::kLost ||
+                        result.hold == Hold::kRefused;
+  return ended_it ? fault_row(EndReason::kArmFault, result.arm_fault) : nullptr;
+}
+
 }  // namespace
 
 bool RunResult::ended_badly() const {
@@ -229,9 +236,7 @@ std::string to_json(const RunResult& result, const Cell& cell) {
                {"duration_s", result.duration_s},
                {"peak_force_N", result.peak_force_N},
                {"peak_torque_Nm", result.peak_torque_Nm}};
-  if (result.reason == EndReason::kArmFault) {
-    json["arm_fault"] = fault_row(result.reason, result.arm_fault)->arm_fault_name;
-  }
+  if (const FaultRow* fault = arms_part(result)) json["arm_fault"] = fault->arm_fault_name;
   json["brake_slip"] = json_of(result.slip, cell);
   json["hold"] = name_of(result.hold);
   json["brakes_unwatched"] = Json::array();

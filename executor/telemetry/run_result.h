@@ -18,7 +18,7 @@ namespace tenon::executor {
 struct RunResult {
   int exit_code = 1;  ///< 0: the plan is done, or something identified, and the arm is disabled
   EndReason reason = EndReason::kNone;
-  ArmFaultKind arm_fault = ArmFaultKind::kNone;  ///< where the reason is the arm's
+  ArmFaultKind arm_fault = ArmFaultKind::kNone;  ///< the reason, or of its not being held
   std::string message;                           ///< one line
   bool disable_confirmed = false;
   BrakeSlip slip{};                    ///< whatever ended the run

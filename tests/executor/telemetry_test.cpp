@@ -252,6 +252,24 @@ TEST(RunResult, WhatWasLostIsCountedAndNamedWhileTheArmsWorkIsDone) {
   EXPECT_EQ(json.at("records")[1].at("lost"), 4);
 }
 
+// Whoever makes a run again that a machine without time has ended has to know what ended it.
+TEST(RunResult, WhatOfTheArmEndedARunOrItsBeingHeldIsNamed) {
+  const auto arm_fault = [](EndReason reason, Hold hold, ArmFaultKind kind) {
+    RunResult result;
+    result.reason = reason;
+    result.hold = hold;
+    result.arm_fault = kind;
+    return nlohmann::json::parse(to_json(result, hand_made_cell())).value("arm_fault", "none");
+  };
+  const ArmFaultKind silent = ArmFaultKind::kBusSilent;
+  EXPECT_EQ(arm_fault(EndReason::kArmFault, Hold::kNone, silent), "bus_silent");
+  EXPECT_EQ(arm_fault(EndReason::kBrakeFailed, Hold::kRefused, silent), "bus_silent");
+  EXPECT_EQ(arm_fault(EndReason::kBrakeFailed, Hold::kLost, silent), "bus_silent");
+  EXPECT_EQ(arm_fault(EndReason::kBrakeFailed, Hold::kHeld, silent), "none");
+  // Its drives were not enabled, and no fault of the arm kept them so.
+  EXPECT_EQ(arm_fault(EndReason::kBrakeFailed, Hold::kRefused, ArmFaultKind::kNone), "none");
+}
+
 TEST(RunResult, AnArmThatNeverDisabledIsNoSuccess) {
   Plan plan = hand_made_plan();
   plan.steps.push_back(hand_made_step(1, 0.01, {{Outcome::kReached, kSuccessorDone}}));
