@@ -264,8 +264,7 @@ endfunction()
 # AREA.Suite.Name under the label AREA. Does nothing where TENON_TEST_AREAS names other areas only.
 # SERIAL: its tests run one at a time, because they run in real time.
 # UNLISTED: built but not registered, because its tests need another machine (tests/guest).
-# SHORT: hundreds of tests that take no time. With sanitizers, where every process takes a quarter of a second to
-# begin, they run in a few processes: AREA.part_0, ...
+# SHORT: hundreds of tests that take no time, run in a few processes: AREA.part_0, ...
 # EXECUTABLES: what its tests run, and is therefore built before it.
 # FULL_EXECUTABLES: what only those with the label full run besides.
 # PLANS: its tests read plans of tests/plans, which are therefore made before it is linked.
@@ -292,7 +291,7 @@ function(tenon_test area)
     return()
   endif()
   tenon_area_runs(${area} PROGRAMS tests_${area} ${arg_EXECUTABLES} FILES ${plans})
-  if(arg_SHORT AND TENON_SANITIZERS)
+  if(arg_SHORT)
     tenon_test_in_parts(${area})
     return()
   endif()

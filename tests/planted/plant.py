@@ -27,6 +27,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 LIST = pathlib.Path(__file__).resolve().parent / "faults.yaml"
 NOT_COPIED = {".git", "build"}
 FAILED = re.compile(r"^\s*\d+ - (\S+) \((?!Not Run)", re.M)
+FAILED_CASE = re.compile(r"^\[  FAILED  \] (\w\S*?),? .*\(\d+ ms\)$", re.M)
 
 
 class OutOfDate(Exception):
@@ -117,11 +118,13 @@ class Copy:
         """Builds and runs a selection of the default tier. @return the names of those that fail, and what was said"""
         self.build(preset, area)
         words = ["ctest", "--preset", preset, "--parallel", self.jobs, "--label-regex", f"^{area}$",
-                 "--label-exclude", "^full$", "--tests-regex", tests or "."]
+                 "--label-exclude", "^full$", "--tests-regex", tests or ".", "--output-on-failure"]
         run = self.run(*words, *([] if to_the_end else ["--stop-on-failure"]))
         failed = FAILED.findall(run.stdout.partition("The following tests FAILED:")[2])
         if run.returncode != 0 and not failed:
             raise Broken(run.stdout)
+        if failed:  # where a test is many cases: those
+            failed = FAILED_CASE.findall(run.stdout) or failed
         return failed, run.stdout
 
     def plant(self, fault):
