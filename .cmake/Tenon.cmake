@@ -160,8 +160,9 @@ endfunction()
 
 # The library of a folder: every .cpp below it, except the mains and the folders after EXCEPT.
 # FOLDER defaults to NAME.
+# INNERMOST: every simulated move spends its time here, a tenth less of it where GCC inlines more.
 function(tenon_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER" "EXCEPT;PUBLIC;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "INNERMOST" "FOLDER" "EXCEPT;PUBLIC;PRIVATE")
   if(NOT arg_FOLDER)
     set(arg_FOLDER ${name})
   endif()
@@ -182,6 +183,9 @@ function(tenon_library name)
                                             $<INSTALL_INTERFACE:${TENON_INSTALLED_ROOT}>)
   target_compile_features(${name} PUBLIC cxx_std_20)
   target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  if(arg_INNERMOST)
+    target_compile_options(${name} PRIVATE $<$<NOT:$<CONFIG:Sanitize>>:-O3>)
+  endif()
 endfunction()
 
 # An executable out of one thin main that composes libraries. SOURCE may be a pattern for a main and its

@@ -39,7 +39,11 @@ NearestCells::~NearestCells() {
 }
 
 NearestOnTriangle NearestCells::nearest(const TriangleTree& tree, const Vector3& point_m,
-                                        std::uint32_t guess) const {
+                                        std::uint32_t guess, Known& known) const {
+  if ((point_m - known.middle_m).cwiseAbs().maxCoeff() <= known.half_m) {
+    return tree.nearest_of(point_m, known.near, guess);
+  }
+  known.half_m = -1.0;
   std::size_t index = 0;
   Vector3 middle_m;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -50,7 +54,8 @@ NearestOnTriangle NearestCells::nearest(const TriangleTree& tree, const Vector3&
     middle_m[i] = low_m_[i] + (at + 0.5) * cell_m_;
   }
   const Cell* cell = &cell_in(cells_[index], tree, middle_m, 0);
-  for (int level = 1; cell->parts; ++level) {
+  int level = 1;
+  for (; cell->parts; ++level) {
     const double quarter_m = std::ldexp(cell_m_, -level - 1);
     std::size_t part = 0;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -60,8 +65,9 @@ NearestOnTriangle NearestCells::nearest(const TriangleTree& tree, const Vector3&
     }
     cell = &cell_in((*cell->parts)[part], tree, middle_m, level);
   }
-  return cell->near.empty() ? tree.nearest(point_m, guess)
-                            : tree.nearest_of(point_m, cell->near, guess);
+  if (cell->near.empty()) return tree.nearest(point_m, guess);
+  known = {middle_m, std::ldexp(cell_m_, -level), cell->near};
+  return tree.nearest_of(point_m, cell->near, guess);
 }
 
 // The nearest to a point in the cell is no farther than half its diagonal more than the nearest to

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "shared/geometry/triangle_tree.h"
@@ -24,15 +25,22 @@ class NearestCells {
   NearestCells(const NearestCells&) = delete;
   NearestCells& operator=(const NearestCells&) = delete;
 
+  /// The cell that a point was in, for whoever asks again nearby.
+  struct Known {
+    Vector3 middle_m = Vector3::Zero();
+    double half_m = -1.0;                 ///< less than 0: none is known
+    std::span<const std::uint32_t> near;  ///< places of triangles in the tree
+  };
   /// The numbers of tree.nearest(). @param tree of the triangles, always the same one
   [[nodiscard]] NearestOnTriangle nearest(const TriangleTree& tree, const Vector3& point_m,
-                                          std::uint32_t guess) const;
+                                          std::uint32_t guess, Known& known) const;
 
  private:
   struct Cell;
   using Slot = std::atomic<const Cell*>;  ///< null: not asked for yet
   struct Cell {
-    /// In ascending order; empty where they are so many that the tree is as fast.
+    /// Their places in the tree, in ascending order; empty where they are so many that the tree is
+    /// as fast.
     std::vector<std::uint32_t> near;
     std::unique_ptr<std::array<Slot, 8>> parts;  ///< null: not cut again
     ~Cell();

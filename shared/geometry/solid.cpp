@@ -138,7 +138,13 @@ Solid::Place Solid::place_at(const Vector3& point_m, const NearestOnTriangle& ne
 }
 
 Solid::Place Solid::place(const Vector3& point_m, std::uint32_t guess) const {
-  return place_at(point_m, cells_.nearest(tree_, point_m, guess));
+  NearestCells::Known known;
+  return place(point_m, guess, known);
+}
+
+Solid::Place Solid::place(const Vector3& point_m, std::uint32_t guess,
+                          NearestCells::Known& known) const {
+  return place_at(point_m, cells_.nearest(tree_, point_m, guess, known));
 }
 
 double Solid::once_m(const Vector3& point_m, std::uint32_t guess) const {

@@ -35,6 +35,9 @@ class Solid {
   /// (Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal").
   /// @param guess a triangle that is probably near: it only saves time
   [[nodiscard]] Place place(const Vector3& point_m, std::uint32_t guess = 0) const;
+  /// Likewise, of a point that moves: what can be nearest around it is looked up once.
+  [[nodiscard]] Place place(const Vector3& point_m, std::uint32_t guess,
+                            NearestCells::Known& known) const;
   /// The same from a lattice (DistanceGrid), which is many times as fast: exact along flat walls,
   /// rounded within a lattice cell of edges. The nearest point follows from distance and gradient.
   [[nodiscard]] Place sampled_place(const Vector3& point_m, std::uint32_t guess = 0) const;

@@ -122,7 +122,7 @@ void TriangleTree::descend(const Vector3& point_m, const NearestOnTriangle& best
     if (!may_hold(square_m2)) continue;
     const Node& node = nodes_[index];
     if (node.count > 0) {
-      for (std::uint32_t i = 0; i < node.count; ++i) look(leaves_[node.first + i]);
+      for (std::uint32_t i = 0; i < node.count; ++i) look(node.first + i);
       continue;
     }
     std::pair<std::uint32_t, double> near{node.first, nodes_[node.first].square_m2(point_m)};
@@ -136,35 +136,39 @@ void TriangleTree::descend(const Vector3& point_m, const NearestOnTriangle& best
 NearestOnTriangle TriangleTree::nearest(const Vector3& point_m, std::uint32_t guess) const {
   NearestOnTriangle best;
   leaves_[place_[guess]].shape.offer(point_m, guess, best);
-  descend(point_m, best, [&](const Leaf& leaf) { leaf.shape.offer(point_m, leaf.triangle, best); });
+  descend(point_m, best, [&](std::uint32_t place) {
+    leaves_[place].shape.offer(point_m, leaves_[place].triangle, best);
+  });
   return best;
 }
 
 bool TriangleTree::within(const Vector3& point_m, double radius_m, std::size_t count_max,
-                          std::vector<std::uint32_t>& triangles) const {
-  triangles.clear();
+                          std::vector<std::uint32_t>& places) const {
+  places.clear();
   NearestOnTriangle reach;
   reach.square_m2 = radius_m * radius_m;
-  descend(point_m, reach, [&](const Leaf& leaf) {
-    if (triangles.size() > count_max) return;
+  descend(point_m, reach, [&](std::uint32_t place) {
+    if (places.size() > count_max) return;
     NearestOnTriangle own = reach;
     own.triangle = kNone;
-    leaf.shape.offer(point_m, leaf.triangle, own);
+    leaves_[place].shape.offer(point_m, leaves_[place].triangle, own);
     if (own.triangle == kNone) return;
-    triangles.push_back(leaf.triangle);
-    if (triangles.size() > count_max) reach.square_m2 = -1.0;  // enough is known
+    places.push_back(place);
+    if (places.size() > count_max) reach.square_m2 = -1.0;  // enough is known
   });
-  if (triangles.size() > count_max) triangles.clear();
-  std::sort(triangles.begin(), triangles.end());
-  return !triangles.empty();
+  if (places.size() > count_max) places.clear();
+  std::sort(places.begin(), places.end());
+  return !places.empty();
 }
 
 NearestOnTriangle TriangleTree::nearest_of(const Vector3& point_m,
-                                           std::span<const std::uint32_t> triangles,
+                                           std::span<const std::uint32_t> places,
                                            std::uint32_t guess) const {
   NearestOnTriangle best;
   leaves_[place_[guess]].shape.offer(point_m, guess, best);
-  for (const std::uint32_t i : triangles) leaves_[place_[i]].shape.offer(point_m, i, best);
+  for (const std::uint32_t place : places) {
+    leaves_[place].shape.offer(point_m, leaves_[place].triangle, best);
+  }
   return best;
 }
 

@@ -60,13 +60,13 @@ class TriangleTree {
   /// @param guess a triangle that is probably near: it only saves time
   [[nodiscard]] NearestOnTriangle nearest(const Vector3& point_m, std::uint32_t guess = 0) const;
 
-  /// All triangles that are no farther than this from a point, in ascending order.
-  /// @return false where they are more than `count_max`: `triangles` is then empty
+  /// The places of all triangles that are no farther than this from a point, in ascending order.
+  /// @return false where they are more than `count_max`: `places` is then empty
   [[nodiscard]] bool within(const Vector3& point_m, double radius_m, std::size_t count_max,
-                            std::vector<std::uint32_t>& triangles) const;
-  /// As nearest(), of these triangles and the guess alone.
+                            std::vector<std::uint32_t>& places) const;
+  /// As nearest(), of the triangles at these places and the guess alone.
   [[nodiscard]] NearestOnTriangle nearest_of(const Vector3& point_m,
-                                             std::span<const std::uint32_t> triangles,
+                                             std::span<const std::uint32_t> places,
                                              std::uint32_t guess) const;
 
   /// Calls `visit` with every triangle whose leaf's box meets `box`, some others included.
@@ -91,7 +91,7 @@ class TriangleTree {
     std::uint32_t triangle = 0;
   };
 
-  /// The leaves that may hold something nearer than `best`, which `look` betters.
+  /// The places of the triangles that may be nearer than `best`, which `look` betters.
   template <typename Look>
   void descend(const Vector3& point_m, const NearestOnTriangle& best, const Look& look) const;
   void split(std::size_t node, std::vector<Vector3>& middles_m);

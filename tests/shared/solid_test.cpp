@@ -104,6 +104,28 @@ TEST(Solid, AGuessChangesNoBit) {
   }
 }
 
+TEST(Solid, WhatIsKeptOfAMovingPointChangesNoBit) {
+  const Solid solid(extruded(tests::round_profile(0.01, 200), 0.03));
+  Random random(4);
+  NearestCells::Known known;
+  Vector3 point_m = 0.5 * solid.size_m();
+  int kept = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    // Steps of a micrometre to ten millimetres, far from it and back to its middle.
+    const double step_m = std::pow(10.0, -6.0 + 4.0 * random.uniform());
+    point_m += drawn_in(random, Vector3::Constant(step_m)) - 1e-3 * point_m;
+    const auto* before = known.near.data();
+    const Solid::Place moved = solid.place(point_m, 0, known);  // no guess may make up for it
+    kept += known.half_m > 0.0 && known.near.data() == before;
+    const Solid::Place plain = solid.place(point_m);
+    ASSERT_EQ(plain.distance_m, moved.distance_m) << i;
+    ASSERT_EQ(plain.outwards, moved.outwards) << i;
+    ASSERT_EQ(plain.triangle, moved.triangle) << i;
+  }
+  EXPECT_GT(kept, 2'000);
+  EXPECT_LT(kept, 18'000);
+}
+
 TEST(Solid, SampledPlacesAreThoseOfTheSurfaceButForItsEdges) {
   const Vector3 size_m(0.04, 0.04, 0.04);
   const Solid solid(box_mesh(size_m));
@@ -168,7 +190,8 @@ TEST(NearestCells, WhatACellRemembersIsWhatTheTreeFinds) {
     Vector3 point_m = drawn_in(random, (i % 3 == 0 ? 2.5 : 1.1) * solid.size_m());
     if (i % 5 == 0) point_m.x() = std::round(point_m.x() / 2e-3) * 2e-3;
     for (const std::uint32_t guess : {0U, static_cast<std::uint32_t>(i % 100)}) {
-      const NearestOnTriangle found = cells.nearest(tree, point_m, guess);
+      NearestCells::Known known;
+      const NearestOnTriangle found = cells.nearest(tree, point_m, guess, known);
       const NearestOnTriangle expected = tree.nearest(point_m);
       ASSERT_EQ(found.at_m, expected.at_m) << point_m.transpose();
       ASSERT_EQ(found.square_m2, expected.square_m2);

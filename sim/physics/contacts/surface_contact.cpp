@@ -76,7 +76,7 @@ const Surface::Place& SurfaceContact::place(Side& side, std::uint32_t index,
   if (point.time == time_) return point.place;
   point.time = time_;
   const Vector3 point_m = point_in(X_SE, side.edges->points_m()[index]);
-  return point.place = side.surface->place(point_m, point.place.guess);
+  return point.place = side.surface->next_place(point_m, point.track);
 }
 
 void SurfaceContact::gather(Side& side, const Pose& X_SE, const Stand& stand) {

@@ -51,7 +51,8 @@ class SurfaceContact {
     };
     std::vector<Ball> balls;
     struct Point {
-      Surface::Place place;             ///< in the surface's frame
+      Surface::Place place;  ///< in the surface's frame
+      Surface::Track track;
       std::uint64_t time = 0;           ///< when it was
       double at_least_m = 0.0;          ///< of its distance
       std::uint64_t at_least_time = 0;  ///< likewise

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "shared/geometry/nearest_cells.h"
 #include "shared/math/pose.h"
 #include "shared/task/task.h"
 #include "sim/physics/surfaces/mesh_distances.h"
@@ -28,6 +29,16 @@ class Surface {
   };
   /// The same numbers whatever the guess.
   [[nodiscard]] virtual Place place(const Vector3& point_m, std::uint32_t guess) const = 0;
+
+  /// What is kept of a point that moves little from place to place, so that the next costs less.
+  struct Track {
+    std::uint32_t guess = 0;
+    NearestCells::Known near;
+  };
+  /// The same numbers whatever is kept.
+  [[nodiscard]] virtual Place next_place(const Vector3& point_m, Track& track) const {
+    return place(point_m, track.guess);
+  }
 
   /// Where a place costs much: no more than its distance, for much less. Empty: ask for the place.
   [[nodiscard]] virtual std::optional<double> distance_at_least_m(

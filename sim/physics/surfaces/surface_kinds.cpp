@@ -118,9 +118,15 @@ class SolidSurface final : public Surface {
   }
 
   [[nodiscard]] Place place(const Vector3& point_m, std::uint32_t guess) const override {
-    const Solid::Place found =
-        sampled_ ? solid_->sampled_place(point_m, guess) : solid_->place(point_m, guess);
-    return {found.distance_m, found.outwards, found.nearest_m, found.triangle};
+    return of_solid(sampled_ ? solid_->sampled_place(point_m, guess)
+                             : solid_->place(point_m, guess));
+  }
+
+  [[nodiscard]] Place next_place(const Vector3& point_m, Track& track) const override {
+    Place found = of_solid(sampled_ ? solid_->sampled_place(point_m, track.guess)
+                                    : solid_->place(point_m, track.guess, track.near));
+    track.guess = found.guess;
+    return found;
   }
 
   [[nodiscard]] std::optional<double> distance_at_least_m(const Vector3& point_m) const override {
@@ -129,6 +135,10 @@ class SolidSurface final : public Surface {
   }
 
  private:
+  [[nodiscard]] static Place of_solid(const Solid::Place& found) {
+    return {found.distance_m, found.outwards, found.nearest_m, found.triangle};
+  }
+
   std::shared_ptr<const Solid> solid_;
   bool sampled_;
 };
