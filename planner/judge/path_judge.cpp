@@ -86,16 +86,13 @@ Judgement PathJudge::judged(std::span<const Vector6> displacements,
         rim_of(slow)};
     return estimated(slow, std::move(at_contact_speed), extremes);
   }
-  const std::vector<Chain>& aligned = at_contact_speed.runs.front().chains;
-  if (auto plain = with_plain_touches(slow, aligned)) {
+  std::vector<Candidate> candidates;
+  if (auto plain = with_plain_touches(slow, at_contact_speed.runs.front().chains)) {
     Certification as_plain = certified(*plain);
-    if (as_plain.holds()) {
-      Judgement judgement = at_any_speed({std::move(*plain), std::move(as_plain)});
-      if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
-    }
+    if (as_plain.holds()) candidates.push_back({std::move(*plain), std::move(as_plain)});
   }
-  // As it was searched.
-  return at_any_speed({std::move(slow), std::move(at_contact_speed)});
+  candidates.push_back({std::move(slow), std::move(at_contact_speed)});  // as it was searched
+  return first_that_holds(std::move(candidates));
 }
 
 Judgement PathJudge::at_once(const Plan& slow, std::span<const Chain> chains) {
@@ -134,18 +131,37 @@ std::optional<Plan> PathJudge::passage_centred(const Plan& plan, std::span<const
   return with_passage_centred(plan, chains, task_, starts, pool_.front(), run_them);
 }
 
-Judgement PathJudge::at_any_speed(Candidate slow) {
-  std::vector<double> distances_m =
-      slow_from(slow.plan, chains_of(slow.certification), task_.particle_sigmas);
-  for (int attempt = 0; attempt < kSpeedAttempts && any_fast(distances_m); ++attempt) {
-    Plan fast = with_slow_from(slow.plan, distances_m);
-    if (misses_again(fast)) break;
-    Certification at_speed = certified(fast);
-    Judgement judgement = at_speeds(centred(std::move(fast), std::move(at_speed)), distances_m);
+Judgement PathJudge::first_that_holds(std::vector<Candidate> candidates) {
+  Judgement judgement = Refutation{};
+  for (const Candidate& slow : candidates) {
+    judgement = at_speed(slow);
     if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
   }
+  for (Candidate& slow : candidates) {
+    judgement = at_contact_speed(std::move(slow));
+    if (std::holds_alternative<JudgedPlan>(judgement)) break;
+  }
+  return judgement;
+}
+
+Judgement PathJudge::at_speed(const Candidate& slow) {
+  std::vector<double> distances_m =
+      slow_from(slow.plan, chains_of(slow.certification), task_.particle_sigmas);
+  Judgement judgement = Refutation{};
+  for (int attempt = 0; attempt < kSpeedAttempts && any_fast(distances_m); ++attempt) {
+    Plan fast = with_slow_from(slow.plan, distances_m);
+    if (auto again = misses_again(fast)) return *std::move(again);
+    Certification certification = certified(fast);
+    judgement = at_speeds(centred(std::move(fast), std::move(certification)), distances_m);
+    if (std::holds_alternative<JudgedPlan>(judgement)) break;
+  }
+  return judgement;
+}
+
+Judgement PathJudge::at_contact_speed(Candidate&& slow) {
   if (auto again = misses_again(slow.plan)) return *std::move(again);
-  return at_speeds(centred(std::move(slow.plan), std::move(slow.certification)), distances_m);
+  std::vector<double> throughout(slow.plan.steps.size(), 0.0);
+  return at_speeds(centred(std::move(slow.plan), std::move(slow.certification)), throughout);
 }
 
 PathJudge::Candidate PathJudge::centred(Plan plan, Certification certification) {

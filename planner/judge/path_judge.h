@@ -104,8 +104,13 @@ class PathJudge {
   /// Placed in the middle of what lets the part in, where that is another place.
   [[nodiscard]] std::optional<Plan> passage_centred(const Plan& plan,
                                                     std::span<const Chain> chains);
-  /// As fast as it holds, else at contact speed. @param slow certified at contact speed
-  [[nodiscard]] Judgement at_any_speed(Candidate slow);
+  /// Each fast, and only then each at contact speed throughout, which takes longer to judge and to
+  /// execute. @param candidates certified at contact speed @return the last refutation where none
+  /// holds
+  [[nodiscard]] Judgement first_that_holds(std::vector<Candidate> candidates);
+  /// As fast as it holds.
+  [[nodiscard]] Judgement at_speed(const Candidate& slow);
+  [[nodiscard]] Judgement at_contact_speed(Candidate&& slow);
   /// Where the plan does not hold at its speeds, the distances are lowered, to be tried next. At
   /// contact speed throughout there is nothing to lower.
   [[nodiscard]] Judgement at_speeds(Candidate&& candidate, std::vector<double>& distances_m);
