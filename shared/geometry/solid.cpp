@@ -31,6 +31,11 @@ std::uint64_t key_of(std::uint32_t from, std::uint32_t to) {
   return (static_cast<std::uint64_t>(from) << 32U) | to;
 }
 
+Vector3 inwards_of(const Vector3& own, const Vector3& other) {
+  constexpr double kBlade = 0.05;  // 36 degrees between the faces
+  return -(own + other) / std::max(kBlade, 1.0 + own.dot(other));
+}
+
 double angle_at(const Vector3& corner_m, const Vector3& a_m, const Vector3& b_m) {
   const Vector3 a = a_m - corner_m;
   const Vector3 b = b_m - corner_m;
@@ -111,7 +116,7 @@ void Solid::find_normals() {
       const Vector3 along_m = mesh_.points_m[to] - mesh_.points_m[from];
       const double bend = own.cross(other).dot(along_m) / along_m.norm();
       if (from < to && std::atan2(bend, own.dot(other)) > kFlat_rad) {
-        convex_edges_.push_back({from, to});
+        convex_edges_.push_back({from, to, inwards_of(own, other)});
       }
     }
   }

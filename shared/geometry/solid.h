@@ -49,9 +49,14 @@ class Solid {
   struct Edge {
     std::uint32_t from = 0;  ///< corners of the mesh
     std::uint32_t to = 0;
+    /// Half-way between both faces, inwards: 1 m along it is 1 m below either; less far below those
+    /// of a blade.
+    Vector3 inwards;
   };
   /// Where the surface bends outwards, each once. Where two solids meet, one of these is on the
-  /// other's surface: faces and hollow edges need not be looked at.
+  /// other's surface: faces and hollow edges need not be looked at. With a face beside another's it
+  /// may be on that surface all along and tell no depth, however far one is in the other: then a
+  /// place inwards of it does (common_depth.h).
   [[nodiscard]] const std::vector<Edge>& convex_edges() const { return convex_edges_; }
 
  private:

@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "shared/geometry/common_depth.h"
 #include "sim/physics/contacts/contact_points.h"
 #include "sim/physics/contacts/prism_contact.h"
 #include "sim/physics/contacts/prism_manifold.h"
@@ -172,11 +173,12 @@ double Scene::reach_m() const {
   return reach_m;
 }
 
-double Scene::overlap_m() {
+double Scene::overlap_m(double enough_m) {
   look_where();
   double overlap_m = 0.0;
   PairPoints buffer;
   for (Watched& watched : watched_) {
+    if (overlap_m > enough_m) break;
     if (watched.apart_until_m > moved_m_) continue;
     const ShapeGeometry& held = held_[watched.pair.held];
     const ShapeGeometry& environment = environment_[watched.pair.environment];
@@ -186,8 +188,10 @@ double Scene::overlap_m() {
     }
     if (watched.surfaces) {
       std::vector<dContactGeom> points;
-      touch_surfaces(watched, points);
+      const double gap_m = touch_surfaces(watched, points);
       overlap_m = std::max(overlap_m, deepest_m(points));
+      if (gap_m > kDrawnTo_m || overlap_m > enough_m) continue;
+      overlap_m = std::max(overlap_m, watched.surfaces->common_depth_m(stand(watched.pair)));
     } else {
       const auto one = prism_contact(held, environment);
       overlap_m = std::max(overlap_m, one ? static_cast<double>(one->depth)

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,7 +73,8 @@ class Scene {
   [[nodiscard]] Vector6 wrench() const { return joints_.wrench(); }
 
   /// Deepest overlap at the body's present pose, m; 0 where nothing touches.
-  [[nodiscard]] double overlap_m();
+  /// @param enough_m no matter how much deeper than this
+  [[nodiscard]] double overlap_m(double enough_m = std::numeric_limits<double>::infinity());
 
   /// Indices of two shapes that touch.
   struct Pair {

@@ -47,6 +47,25 @@ TEST(NewTask, MeasuresHowAKeyedPegGoesIn) {
   EXPECT_TRUE(fit.yaw_matters);
 }
 
+// All edges of the one lie on the other's surface then.
+TEST(NewTask, SeesPartsOneInTheOtherThatAreFlush) {
+  const Vector3 size_m(40e-3, 40e-3, 80e-3);
+  const auto overlap_m = [&](const Vector3& off_m) {
+    const auto body = solid_of(tests::box_mesh(size_m));
+    return fit_of(body, body, {off_m, Eigen::Quaterniond::Identity()}).overlap_m;
+  };
+  EXPECT_NEAR(overlap_m({0.0, 0.0, 0.0}), 40e-3, 10e-3);
+  for (const double deep_m : {0.1e-3, 1e-3, 8e-3}) {
+    EXPECT_NEAR(overlap_m({40e-3 - deep_m, 0.0, 0.0}), deep_m, 1e-9);
+    EXPECT_NEAR(overlap_m({0.0, 0.0, 80e-3 - deep_m}), deep_m, 1e-9);
+    EXPECT_NEAR(overlap_m({10e-3, 40e-3 - deep_m, 0.0}), deep_m, 1e-9);
+  }
+  EXPECT_EQ(overlap_m({40e-3, 0.0, 0.0}), 0.0);
+  EXPECT_EQ(overlap_m({10e-3, 0.0, 80e-3}), 0.0);
+  const auto peg = solid_of(round_peg(10e-3));
+  EXPECT_GT(fit_of(peg, peg, {}).overlap_m, 10e-3);
+}
+
 TEST(NewTask, ARoundPegMayTurn) {
   const PartFit fit = fit_of(solid_of(round_peg(10e-3)), solid_of(round_socket(10.3e-3)), {});
   ASSERT_TRUE(fit.way_out.has_value());

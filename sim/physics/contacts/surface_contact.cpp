@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 
+#include "shared/geometry/common_depth.h"
+
 namespace tenon::sim {
 namespace {
 
@@ -77,6 +79,11 @@ const Surface::Place& SurfaceContact::place(Side& side, std::uint32_t index,
   point.time = time_;
   const Vector3 point_m = point_in(X_SE, side.edges->points_m()[index]);
   return point.place = side.surface->next_place(point_m, point.track);
+}
+
+Pose SurfaceContact::edges_in_surface(const Side& side, const Stand& stand) const {
+  return &side == &held_ ? compose(inverse(stand.X_WE), stand.X_WH)
+                         : compose(inverse(stand.X_WH), stand.X_WE);
 }
 
 void SurfaceContact::gather(Side& side, const Pose& X_SE, const Stand& stand) {
@@ -199,6 +206,46 @@ double SurfaceContact::look_at(Side& side, std::uint32_t index, const Pose& X_SE
   return std::min({from.distance_m, to.distance_m, foot.distance_m}) - stand.offset_m;
 }
 
+double SurfaceContact::common_depth_m(const Side& side, const Pose& X_SE, double offset_m) {
+  const Surface& edges = *side.edges;
+  const auto other_m = [&](const Vector3& point_m) {
+    const Vector3 there_m = point_in(X_SE, point_m);
+    const auto at_least_m = side.surface->distance_at_least_m(there_m);
+    if (at_least_m && *at_least_m > offset_m) return *at_least_m - offset_m;
+    return side.surface->place(there_m, 0).distance_m - offset_m;
+  };
+  const auto own_m = [&](const Vector3& point_m) { return edges.place(point_m, 0).distance_m; };
+  double deepest_m = 0.0;
+  std::vector<std::uint32_t> waiting;
+  if (!edges.balls().empty()) waiting.push_back(0);
+  while (!waiting.empty()) {
+    const Surface::Ball& ball = edges.balls()[waiting.back()];
+    waiting.pop_back();
+    if (other_m(ball.centre_m) > ball.radius_m + kDrawnTo_m) continue;
+    if (ball.child != 0) {
+      waiting.insert(waiting.end(), {ball.child, ball.child + 1});
+      continue;
+    }
+    for (std::uint32_t i = ball.first; i < ball.first + ball.count; ++i) {
+      const std::uint32_t index = edges.order()[i];
+      const Surface::Piece& piece = edges.pieces()[index];
+      const Vector3 middle_m = 0.5 * (edges.points_m()[piece.from] + edges.points_m()[piece.to]);
+      deepest_m = std::max(deepest_m,
+                           tenon::common_depth_m(middle_m, edges.inwards(index), own_m, other_m));
+    }
+  }
+  return deepest_m;
+}
+
+double SurfaceContact::common_depth_m(const Stand& stand) const {
+  double deepest_m = 0.0;
+  for (const Side* side : {&held_, &environment_}) {
+    const Pose X_SE = edges_in_surface(*side, stand);
+    deepest_m = std::max(deepest_m, common_depth_m(*side, X_SE, stand.offset_m));
+  }
+  return deepest_m;
+}
+
 void SurfaceContact::choose(const Stand& stand, std::vector<dContactGeom>& points) const {
   double deepest_m = -1.0;
   for (const Found& found : found_) {
@@ -214,9 +261,7 @@ double SurfaceContact::find(const Stand& stand, std::vector<dContactGeom>& point
   found_.clear();
   double until_m = std::numeric_limits<double>::infinity();
   for (Side* side : {&held_, &environment_}) {
-    const bool held = side == &held_;
-    const Pose X_SE =
-        held ? compose(inverse(stand.X_WE), stand.X_WH) : compose(inverse(stand.X_WH), stand.X_WE);
+    const Pose X_SE = edges_in_surface(*side, stand);
     if (side->complete_until_m <= stand.moved_m) gather(*side, X_SE, stand);
     for (const std::uint32_t piece : side->near) {
       double& apart_until_m = side->apart_until_m[piece];

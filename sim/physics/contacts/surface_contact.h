@@ -29,6 +29,11 @@ class SurfaceContact {
   /// @return a gap, m: nothing touches before the two have moved so far; 0 where something does
   double find(const Stand& stand, std::vector<dContactGeom>& points);
 
+  /// How deep the two are in each other at edges that lie on each other's surface, as those of
+  /// faces side by side do, which tell no depth (common_depth.h); nothing that is remembered has a
+  /// part in it. @return m, of several such edges the most; 0 where there is none
+  [[nodiscard]] double common_depth_m(const Stand& stand) const;
+
   /// The two may have moved anywhere.
   void forget();
 
@@ -59,6 +64,8 @@ class SurfaceContact {
     };
     std::vector<Point> points;  ///< of the edges
   };
+  /// The edges of a side in the frame of its surface.
+  [[nodiscard]] Pose edges_in_surface(const Side& side, const Stand& stand) const;
   void gather(Side& side, const Pose& X_SE, const Stand& stand);
   const Surface::Place& place(Side& side, std::uint32_t point, const Pose& X_SE) const;
   /// What a piece's distance is no less than, m; of its ends and its middle alone, so that it may
@@ -67,6 +74,9 @@ class SurfaceContact {
                                             const Pose& X_SE) const;
   /// @return a gap, m
   double look_at(Side& side, std::uint32_t piece, const Pose& X_SE, const Stand& stand);
+
+  /// Of one side's pieces.
+  [[nodiscard]] static double common_depth_m(const Side& side, const Pose& X_SE, double offset_m);
 
   /// In the frame of the surface that is touched.
   struct Found {

@@ -256,7 +256,7 @@ bool OdeRollout::in_collision(const Pose& tool_pose) {
   physics_->tool.place(tool_pose);
   physics_->scene.place_environment({});
   physics_->scene.set_oversize(task_.oversize_m);
-  return physics_->scene.overlap_m() > kCollisionDepth_m;
+  return physics_->scene.overlap_m(kCollisionDepth_m) > kCollisionDepth_m;
 }
 
 std::unique_ptr<Rollout> OdeRollout::clone() const {

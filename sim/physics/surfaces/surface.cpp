@@ -31,6 +31,7 @@ void Surface::sample(const std::vector<Edge>& edges, double piece_max_m) {
       const std::uint32_t to =
           index_of(i == count ? edge.to_m : edge.from_m + part * (edge.to_m - edge.from_m));
       pieces_.push_back({from, to});
+      inwards_.push_back(edge.inwards);
       from = to;
     }
   }

@@ -52,6 +52,8 @@ class Surface {
   };
   [[nodiscard]] const std::vector<Vector3>& points_m() const { return points_m_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+  /// Of a piece: as Solid::Edge::inwards.
+  [[nodiscard]] const Vector3& inwards(std::uint32_t piece) const { return inwards_[piece]; }
 
   /// Whether no edge at the point leads farther along a direction, a unit vector: what is pressed
   /// that way touches there, and not beside.
@@ -78,6 +80,7 @@ class Surface {
   struct Edge {
     Vector3 from_m;
     Vector3 to_m;
+    Vector3 inwards;
   };
   void sample(const std::vector<Edge>& edges, double piece_max_m);
 
@@ -86,6 +89,7 @@ class Surface {
 
   std::vector<Vector3> points_m_;
   std::vector<Piece> pieces_;
+  std::vector<Vector3> inwards_;               ///< of the pieces
   std::vector<std::vector<Vector3>> leading_;  ///< directions of the pieces at each point
   std::vector<Ball> balls_;
   std::vector<std::uint32_t> order_;

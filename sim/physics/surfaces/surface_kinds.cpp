@@ -34,7 +34,10 @@ class BoxSurface final : public Surface {
           from[(axis + 2) % 3] *= v;
           Vector3 to = from;
           from[axis] = -from[axis];
-          edges.push_back({from, to});
+          Vector3 inwards = Vector3::Zero();
+          inwards[(axis + 1) % 3] = -u;
+          inwards[(axis + 2) % 3] = -v;
+          edges.push_back({from, to, inwards});
         }
       }
     }
@@ -73,9 +76,11 @@ class CylinderSurface final : public Surface {
     };
     std::vector<Edge> edges;
     for (int i = 0; i < count; ++i) {
-      edges.push_back({at(i, -half_length_m_), at(i, half_length_m_)});
-      for (const double z : {-half_length_m_, half_length_m_}) {
-        edges.push_back({at(i, z), at(i + 1, z)});
+      edges.push_back({at(i, -half_length_m_), at(i, half_length_m_), -at(i, 0.0) / radius_m_});
+      const Vector3 amid = 0.5 * (at(i, 0.0) + at(i + 1, 0.0));
+      for (const double side : {-1.0, 1.0}) {
+        const double z = side * half_length_m_;
+        edges.push_back({at(i, z), at(i + 1, z), -amid.normalized() - side * Vector3::UnitZ()});
       }
     }
     sample(edges, piece_max_m(size_m));
@@ -112,7 +117,7 @@ class SolidSurface final : public Surface {
     std::vector<Edge> edges;
     const std::vector<Vector3>& points_m = solid_->mesh().points_m;
     for (const Solid::Edge& edge : solid_->convex_edges()) {
-      edges.push_back({points_m[edge.from], points_m[edge.to]});
+      edges.push_back({points_m[edge.from], points_m[edge.to], edge.inwards});
     }
     sample(edges, piece_max_m(solid_->size_m()));
   }
