@@ -50,7 +50,8 @@ Foot foot_of(double from_m, double to_m, double slope_from, double slope_to, dou
 
 }  // namespace
 
-SurfaceContact::SurfaceContact(const Surface& held, const Surface& environment) {
+SurfaceContact::SurfaceContact(const Surface& held, const Surface& environment)
+    : exact_(held.exact() && environment.exact()) {
   held_.edges = environment_.surface = &held;
   held_.surface = environment_.edges = &environment;
   for (Side* side : {&held_, &environment_}) {
@@ -179,6 +180,9 @@ double SurfaceContact::look_at(Side& side, std::uint32_t index, const Pose& X_SE
   };
   const Surface::Place& from = end(piece.from);
   const Surface::Place& to = end(piece.to);
+  for (const Surface::Place* at : {&from, &to}) {
+    if (exact_ && at->distance_m <= stand.offset_m) note_beside(side, index, X_SE, *at);
+  }
   const Vector3 from_m = edges.points_m()[piece.from];
   const Vector3 along_m = edges.points_m()[piece.to] - from_m;
   const double length_m = along_m.norm();
@@ -204,6 +208,44 @@ double SurfaceContact::look_at(Side& side, std::uint32_t index, const Pose& X_SE
     }
   }
   return std::min({from.distance_m, to.distance_m, foot.distance_m}) - stand.offset_m;
+}
+
+void SurfaceContact::note_beside(const Side& side, std::uint32_t index, const Pose& X_SE,
+                                 const Surface::Place& at) {
+  constexpr double kInto = -0.5;
+  const Vector3 inwards = X_SE.orientation * side.edges->inwards(index);
+  if (inwards.dot(at.outwards) > kInto) return;
+  beside_.push_back({&side == &held_, index, at.outwards});
+}
+
+void SurfaceContact::look_beside(const Stand& stand) {
+  constexpr double kInwards_m = 1e-4;
+  constexpr double kSameWay = 0.9;
+  const std::size_t others = found_.size();
+  for (const Beside& beside : beside_) {
+    Side& side = beside.held ? held_ : environment_;
+    const Pose X_SE = edges_in_surface(side, stand);
+    const Vector3 inwards = X_SE.orientation * side.edges->inwards(beside.piece);
+    const Vector3 way = (inwards - inwards.dot(beside.outwards) * beside.outwards).normalized();
+    const bool held_apart =
+        std::any_of(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(others),
+                    [&](const Found& found) {
+                      const Vector3 outwards = found.held == beside.held
+                                                   ? found.outwards
+                                                   : Vector3(-(X_SE.orientation * found.outwards));
+                      return found.depth_m > 0.0 && outwards.dot(way) > kSameWay;
+                    });
+    if (held_apart) continue;
+    const Surface::Piece& piece = side.edges->pieces()[beside.piece];
+    const std::vector<Vector3>& points_m = side.edges->points_m();
+    const Vector3 at_m = point_in(X_SE, 0.5 * (points_m[piece.from] + points_m[piece.to]));
+    const Surface::Place face = side.surface->place(at_m + kInwards_m * inwards, 0);
+    const double off_m = face.distance_m - kInwards_m * inwards.dot(face.outwards);
+    if (face.outwards.dot(way) < kSameWay || off_m > stand.offset_m) continue;
+    const Vector3 on_face_m = at_m - off_m * face.outwards;
+    found_.push_back(
+        {beside.held ? on_face_m : at_m, face.outwards, stand.offset_m - off_m, beside.held, true});
+  }
 }
 
 double SurfaceContact::common_depth_m(const Side& side, const Pose& X_SE, double offset_m) {
@@ -238,6 +280,7 @@ double SurfaceContact::common_depth_m(const Side& side, const Pose& X_SE, double
 }
 
 double SurfaceContact::common_depth_m(const Stand& stand) const {
+  if (!exact_) return 0.0;
   double deepest_m = 0.0;
   for (const Side* side : {&held_, &environment_}) {
     const Pose X_SE = edges_in_surface(*side, stand);
@@ -259,6 +302,7 @@ void SurfaceContact::choose(const Stand& stand, std::vector<dContactGeom>& point
 double SurfaceContact::find(const Stand& stand, std::vector<dContactGeom>& points) {
   ++time_;
   found_.clear();
+  beside_.clear();
   double until_m = std::numeric_limits<double>::infinity();
   for (Side* side : {&held_, &environment_}) {
     const Pose X_SE = edges_in_surface(*side, stand);
@@ -273,6 +317,7 @@ double SurfaceContact::find(const Stand& stand, std::vector<dContactGeom>& point
     }
     until_m = std::min(until_m, side->complete_until_m);
   }
+  look_beside(stand);
   choose(stand, points);
   return std::max(0.0, until_m - stand.moved_m);
 }

@@ -86,6 +86,17 @@ class SurfaceContact {
     bool held = false;      ///< an edge of the held one touches the environment
     bool foremost = false;  ///< where it is pressed against the surface, not beside
   };
+  /// A piece on a face that its body goes into: beside that face it may be in another.
+  struct Beside {
+    bool held = false;
+    std::uint32_t piece = 0;
+    Vector3 outwards;  ///< of that face
+  };
+  /// Keeps a piece that is such. @param at one of its ends
+  void note_beside(const Side& side, std::uint32_t piece, const Pose& X_SE,
+                   const Surface::Place& at);
+  /// Where nothing else was found that holds the two apart across such a piece: the faces that do.
+  void look_beside(const Stand& stand);
   void add(const Found& found, const Stand& stand, std::vector<dContactGeom>& points) const;
   /// Where an edge that lies on a face passes the face's rim, it is nearer to the side than to the
   /// face, and would be pushed off: what is not foremost counts only where it is deeper than all
@@ -94,8 +105,10 @@ class SurfaceContact {
 
   Side held_;
   Side environment_;
+  bool exact_;  ///< the distances of both; others say of nothing that it is flush
   std::uint64_t time_ = 0;
   std::vector<Found> found_;
+  std::vector<Beside> beside_;
 };
 
 }  // namespace tenon::sim

@@ -40,6 +40,9 @@ class Surface {
     return place(point_m, track.guess);
   }
 
+  /// Whether distances are true to the last bits, so that what touches is at none.
+  [[nodiscard]] virtual bool exact() const { return true; }
+
   /// Where a place costs much: no more than its distance, for much less. Empty: ask for the place.
   [[nodiscard]] virtual std::optional<double> distance_at_least_m(
       const Vector3& /*point_m*/) const {

@@ -134,6 +134,8 @@ class SolidSurface final : public Surface {
     return found;
   }
 
+  [[nodiscard]] bool exact() const override { return !sampled_; }
+
   [[nodiscard]] std::optional<double> distance_at_least_m(const Vector3& point_m) const override {
     if (sampled_) return std::nullopt;
     return solid_->distance_at_least_m(point_m);
