@@ -18,6 +18,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import failures  # pylint: disable=wrong-import-position
 
 SECONDS_MAX = 300  # that a page may take for anything before it counts as hung
+PAPER = 718  # px of 1/96 inch: A4 between Chromium's margins
 
 
 class BrowserError(Exception):
@@ -146,13 +147,20 @@ class Browser:
         self.events.clear()
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
                   mobile=width < 600)
-        self.call("Emulation.setEmulatedMedia", features=[
+        self.call("Emulation.setEmulatedMedia", media="", features=[
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
             {"name": "prefers-reduced-motion", "value": "reduce" if calm else "no-preference"}])
         self.call("Page.navigate", url="about:blank")
         self.events.clear()
         self.call("Page.navigate", url=(str(file) if served else pathlib.Path(file).resolve().as_uri()) + fragment)
         self.wait_for("document.readyState === 'complete' && document.body.childElementCount > 0")
+
+    def to_paper(self, width=PAPER):
+        """As the open page is printed. A printer is told of by itself: emulation leaves that out."""
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=1000, deviceScaleFactor=1, mobile=False)
+        self.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+        self.call("Emulation.setEmulatedMedia", media="print", features=[])
+        self.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def said(self):
         """What the page wrote to the console, threw, or the browser noted about it."""

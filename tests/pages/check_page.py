@@ -11,6 +11,7 @@ import subprocess
 import tempfile
 
 from browser import Browser, run_test
+from on_paper import print_page
 
 # (task, change, pictures: one for each start and view, parts that stand in something, finding)
 TASKS = [
@@ -69,6 +70,7 @@ def main(failures):
             page, status = write_page(arguments, pathlib.Path(folder), number, task, change)
             failures.check(status == (2 if change else 0), f"{task}: exit status {status}")
             look(browser, page, expected, failures, arguments.pictures)
+            print_page(browser, page, failures, arguments.pictures)
     return f"{len(TASKS)} pages"
 
 

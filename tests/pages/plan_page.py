@@ -14,6 +14,7 @@ import tempfile
 
 from browser import Browser, run_test
 from looked_at import LookedAt
+from on_paper import print_page
 
 BYTES_MAX = 3_000_000
 SMALL = 700  # px; what plays is drawn many times, by software where no graphics card is
@@ -168,6 +169,9 @@ def main(failures):
                 play(browser, files[0], failures)
                 if webgl:
                     continue  # words and numbers are the same
+                for file in files:
+                    text = print_page(browser, file, failures, arguments.pictures)
+                    failures.check("\n0\t" in text, f"{file.stem}: the moves have no numbers in print")
                 drawn = [tell_the_search(browser, file, json.loads(file.with_suffix(".json").read_text()), failures)
                          for file in files[:-1]]
                 failures.check(any(drawn), "no page draws cost against bound")
