@@ -33,6 +33,24 @@ std::vector<Vector3> tools_m(const ReportData& data) {
   return tools_m;
 }
 
+std::vector<Vector3> positions_m(const std::vector<Pose>& tools) {
+  std::vector<Vector3> positions_m;
+  positions_m.reserve(tools.size());
+  for (const Pose& tool : tools) positions_m.push_back(tool.position_m);
+  return positions_m;
+}
+
+std::string particle_paths(const ReportData& data, const Canvas& canvas) {
+  std::string svg;
+  for (std::size_t p = 0; p < data.chains.size(); ++p) {
+    const std::vector<Vector3> path = path_of(data.chains[p]);
+    svg += canvas.polyline(path, 2.5, "stroke='" + colour(p) + "' stroke-opacity='.8'");
+    for (const Vector3& rest : path) svg += canvas.dot(rest, 3.5, "fill='" + colour(p) + "'");
+    svg += canvas.dot(path.front(), 6.5, "fill='#fff' stroke='" + colour(p) + "'");
+  }
+  return svg;
+}
+
 }  // namespace
 
 std::string surroundings(const Task& task, const Canvas& canvas, const drawing::View& view) {
@@ -72,13 +90,20 @@ std::string overview(const ReportData& data, const drawing::View& view) {
     svg += canvas.polyline(path_of(draw.chain), 1.3, "stroke='#000' stroke-opacity='.06'");
     svg += canvas.dot(draw.chain.end().position_m, 1.5, "fill='#000' fill-opacity='.35'");
   }
-  for (std::size_t p = 0; p < data.chains.size(); ++p) {
-    const std::vector<Vector3> path = path_of(data.chains[p]);
-    svg += canvas.polyline(path, 2.5, "stroke='" + colour(p) + "' stroke-opacity='.8'");
-    for (const Vector3& rest : path) svg += canvas.dot(rest, 3.5, "fill='" + colour(p) + "'");
-    svg += canvas.dot(path.front(), 6.5, "fill='#fff' stroke='" + colour(p) + "'");
-  }
-  return svg + "</svg>\n";
+  return svg + particle_paths(data, canvas) + "</svg>\n";
+}
+
+std::string run_overview(const ReportData& data, const std::vector<Pose>& tools,
+                         const drawing::View& view) {
+  std::vector<Vector3> way = positions_m(tools);
+  std::vector<Vector3> all = tools_m(data);
+  all.insert(all.end(), way.begin(), way.end());
+  const Canvas canvas(view, data.task, all);
+  return canvas.open("The run, " + std::string(view.title)) +
+         surroundings(data.task, canvas, view) + part_at_goal(data.task, canvas, data.plan.goal) +
+         part_at(data.task, canvas, tools.back(),
+                 "fill='#0072b2' fill-opacity='.12' stroke='#0072b2'") +
+         particle_paths(data, canvas) + canvas.polyline(way, 3.5, "stroke='#000'") + "</svg>\n";
 }
 
 std::string uncertainty_chart(const ReportData& data) {

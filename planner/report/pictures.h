@@ -3,6 +3,7 @@
 // side, and the belief's uncertainty over the steps. Inline SVG; pure; any thread.
 
 #include <string>
+#include <vector>
 
 #include "planner/report/report_canvas.h"
 #include "planner/report/report_data.h"
@@ -23,6 +24,11 @@ namespace tenon::planner {
 
 /// The environment, the part at start and goal, and the paths of all particles and draws.
 [[nodiscard]] std::string overview(const ReportData& data, const drawing::View& view);
+
+/// The environment, the part at the goal and where a run ended, its way and the particles' paths.
+/// @param tools of the run, as they are drawn; not empty
+[[nodiscard]] std::string run_overview(const ReportData& data, const std::vector<Pose>& tools,
+                                       const drawing::View& view);
 
 /// A bar a node, and what it shows in words.
 [[nodiscard]] std::string uncertainty_chart(const ReportData& data);

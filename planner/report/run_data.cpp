@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "planner/report/moments.h"
 #include "planner/report/page_data.h"
+#include "planner/report/run_path.h"
 #include "shared/drawing/scene_json.h"
 #include "shared/drawing/step_words.h"
 
@@ -32,11 +34,6 @@ Json row(const std::vector<double>& values, double unit) {
   Json json = Json::array();
   for (const double value : values) json.push_back(number(value, unit));
   return json;
-}
-
-Pose pose_of(const std::array<float, 7>& tool) {
-  return {Vector3(tool[0], tool[1], tool[2]),
-          Eigen::Quaterniond(tool[3], tool[4], tool[5], tool[6]).normalized()};
 }
 
 /// Of a tool along an axis: m, and rad as it has turned since the plan's start.
@@ -197,23 +194,9 @@ Json spans_json(const RecordedRun& run) {
   return json;
 }
 
-/// What brings a run that reached its goal onto the goal of the drawn task: the environment was not
-/// where the task has it. Along the plan's coordinates alone.
 Json fit_json(const Plan& plan, const RecordedRun& run) {
-  if (!run.done || run.steps.empty() || run.steps.back().successor != kSuccessorDone) {
-    return nullptr;
-  }
-  const Pose& end = run.steps.back().tool;
-  Pose fit;
-  if ((plan.coordinates >> 3U) != 0) {
-    fit.orientation = plan.goal.orientation * end.orientation.conjugate();
-  }
-  const Vector3 moved = plan.goal.position_m - fit.orientation * end.position_m;
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool turned = (plan.coordinates >> 3U) != 0;
-    if (turned || has(plan.coordinates, axis)) fit.position_m[axis] = moved[axis];
-  }
-  return Json::parse(drawing::pose_json(fit));
+  const std::optional<Pose> fit = fit_of(plan, run);
+  return fit ? Json::parse(drawing::pose_json(*fit)) : Json(nullptr);
 }
 
 Json run_of(const Plan& plan, const RecordedRun& run) {

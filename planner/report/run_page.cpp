@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+#include "planner/report/pictures.h"
 #include "planner/report/plan_sections.h"
 #include "planner/report/run_data.h"
+#include "planner/report/run_path.h"
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
 #include "shared/drawing/page.h"
 #include "shared/drawing/step_words.h"
+#include "shared/drawing/view.h"
 
 namespace tenon::planner {
 namespace {
@@ -135,8 +139,29 @@ std::string curves(const RecordedRun& run) {
            "<code>--log</code>.</p></section>\n";
   }
   return html +
-         "<p class='still'>The curves need scripts and a screen.</p>\n"
+         "<p class='unscripted'>The curves need scripts.</p>\n"
          "<div data-part='curves'></div></section>\n";
+}
+
+/// Of the way that a picture shows.
+constexpr std::size_t kWayMax = 600;
+
+/// What stands still: in print, and where no script runs.
+std::string stills(const RecordedRun& run, const ReportData& data) {
+  std::vector<Pose> tools = tools_of(data.plan, run, kWayMax);
+  const std::optional<Pose> fit = fit_of(data.plan, run);
+  if (fit) {
+    for (Pose& tool : tools) tool = compose(*fit, tool);
+  }
+  std::string html = "<section class='still'>\n";
+  for (const drawing::View& view : drawing::views_of(data.plan.coordinates)) {
+    html += std::string("<h2>") + view.title + "</h2>\n" + run_overview(data, tools, view);
+  }
+  return html +
+         "<p>Blue outline: the part where the run ended; green: at the goal. Black: the way of "
+         "the tool" +
+         (fit ? ", moved so that it ends at the goal" : "") +
+         ". Coloured: the paths of the plan's particles.</p></section>\n";
 }
 
 std::string plan_sections(const ReportData& data) {
@@ -162,6 +187,7 @@ std::string run_report(const Plan& plan, const RecordedRun& run, const ReportDat
         "<p class='note'>Part, environment and the plan's own paths are in the task: "
         "give it with <code>--task</code>.</p>\n";
   }
+  if (data != nullptr) page.body += stills(run, *data);
   page.body += curves(run) + faults(run) + steps(plan, run);
   if (data != nullptr) page.body += plan_sections(*data);
   page.json = run_json(plan, run, data);

@@ -102,17 +102,17 @@ double number(const ReadJson& json, double least = 0.0) {
 
 /// Of lists and objects no more than that they are: printing them takes as many calls as they are
 /// deep.
-std::string shown(const ReadJson& json) {
+std::string written(const ReadJson& json) {
   return json.is_structured() ? std::string(json.type_name()) : json.dump();
 }
 
 std::uint64_t count(const ReadJson& json) {
-  if (!json.is_number_unsigned()) throw Wrong{"a count is none: " + shown(json)};
+  if (!json.is_number_unsigned()) throw Wrong{"a count is none: " + written(json)};
   return json.get<std::uint64_t>();
 }
 
 const ReadJson& list(const ReadJson& json) {
-  if (!json.is_array()) throw Wrong{"a list is none: " + shown(json)};
+  if (!json.is_array()) throw Wrong{"a list is none: " + written(json)};
   return json;
 }
 

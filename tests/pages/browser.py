@@ -156,10 +156,11 @@ class Browser:
         self.wait_for("document.readyState === 'complete' && document.body.childElementCount > 0")
 
     def to_paper(self, width=PAPER):
-        """As the open page is printed. A printer is told of by itself: emulation leaves that out."""
+        """As the open page is printed by who reads it dark. A page is told of a printer; emulation leaves that out."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=1000, deviceScaleFactor=1, mobile=False)
         self.evaluate("window.dispatchEvent(new Event('beforeprint'))")
-        self.call("Emulation.setEmulatedMedia", media="print", features=[])
+        self.call("Emulation.setEmulatedMedia", media="print",
+                  features=[{"name": "prefers-color-scheme", "value": "dark"}])
         self.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def said(self):

@@ -7,7 +7,7 @@ JUMPS = "[...document.querySelectorAll('button.jump')].filter(e => !e.closest('d
 
 def print_page(browser, file, failures, pictures):
     """@return the text that is printed"""
-    browser.open(file)
+    browser.open(file, dark=True)
     browser.wait_for("document.documentElement.dataset.ready === 'true' || !document.getElementById('page-data')")
     browser.to_paper()
     name = f"{file.stem}_paper"
@@ -19,6 +19,8 @@ def print_page(browser, file, failures, pictures):
     failures.check(framed == 0, f"{name}: {framed} buttons on paper")
     wide = browser.evaluate("document.documentElement.scrollWidth")
     failures.check(wide <= PAPER, f"{name}: {wide} px wide, the paper {PAPER}")
+    paper = browser.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--paper').trim()")
+    failures.check(paper == "#faf9f6", f"{name}: on {paper}")
     for said in browser.said():
         failures.check(False, f"{name}: says {said}")
     return browser.evaluate("document.body.innerText")

@@ -18,6 +18,7 @@ import time
 
 from browser import Browser, run_test
 from looked_at import LookedAt
+from on_paper import print_page
 from plan_page import BYTES_MAX, ROOT, SMALL, look_at, press
 
 PLAN = "box_4_gantry3"
@@ -188,6 +189,36 @@ def tell(browser, pages, failures):
                    "fault: its button does not lead to it")
 
 
+# How many pixels of a curve's canvas are dark enough for paper.
+INK = """[...document.querySelectorAll('.plot canvas')].map(canvas => {
+  if (!canvas.getBoundingClientRect().width) return 0;
+  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  let dark = 0;
+  for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200 && data[i] + data[i + 1] + data[i + 2] < 400) ++dark;
+  return dark; })"""
+STILLS = ("[...document.querySelectorAll('section.still svg[role=img]')].filter(e => e.getBoundingClientRect().height)"
+          ".map(e => e.querySelector('title').textContent)")
+
+
+def print_pages(browser, pages, failures, pictures):
+    """In print stand the curves, as drawn, and a still picture of the scene; the latter also where no script runs."""
+    for name, page in pages.items():
+        text = print_page(browser, page, failures, pictures)
+        ink = browser.evaluate(INK)
+        wanted = 0 if name == "result" else 7
+        failures.check(len(ink) >= wanted and all(count > 100 for count in ink), f"{name}: prints curves of {ink} pixels")
+        stills = browser.evaluate(STILLS)
+        failures.check(len(stills) == (0 if name == "bare" else 1), f"{name}: prints the pictures {stills}")
+        failures.check("need scripts" not in text, f"{name}: asks for scripts in print")
+        browser.call("Emulation.setScriptExecutionDisabled", value=True)
+        browser.open(page)
+        browser.call("Emulation.setScriptExecutionDisabled", value=False)
+        text = browser.evaluate("document.body.innerText")
+        stills = browser.evaluate(STILLS)
+        failures.check(len(stills) == (0 if name == "bare" else 1), f"{name}: without scripts shows {stills}")
+        failures.check(("The curves need scripts." in text) == (wanted > 0), f"{name}: without scripts says '{text}'")
+
+
 def refuse(arguments, folder, failures):
     """One line each, status 2, and no page."""
     page = folder / "refused.html"
@@ -241,6 +272,7 @@ def main(failures):
                 for name in ("box", "fault"):
                     hold_against_the_result(browser, pages[name], folder / f"{name}.json", failures)
                 tell(browser, pages, failures)
+                print_pages(browser, pages, failures, arguments.pictures)
         looked_at.now(failures)
     return f"{len(pages)} pages"
 

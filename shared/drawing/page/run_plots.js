@@ -1,6 +1,8 @@
 // Curves of a run over time, one under the other on one span of time: what is zoomed in one is in all.
 // A click leads to that time, dragging across zooms, a double click shows the whole run again.
 
+const PAPER_PX = 632; // of A4, within margins and frame
+
 const PLOT_FONT = "12px system-ui, 'DejaVu Sans', sans-serif";
 
 function colourOf(name) {
@@ -180,10 +182,20 @@ class RunPlots {
     this.buildStrip();
     new ResizeObserver(() => this.resize()).observe(this.host);
     onColours(() => this.redraw());
+    window.addEventListener("beforeprint", () => this.print(true));
+    window.addEventListener("afterprint", () => this.print(false));
+  }
+
+  // On paper as wide as that is, dark on light. A canvas is printed as it was drawn before.
+  print(onPaper) {
+    this.onPaper = onPaper;
+    document.documentElement.classList.toggle("paper", onPaper);
+    this.resize();
+    this.redraw();
   }
 
   width() {
-    return Math.max(this.host.clientWidth, 280);
+    return this.onPaper ? PAPER_PX : Math.max(this.host.clientWidth, 280);
   }
 
   resize() {
