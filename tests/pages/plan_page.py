@@ -19,6 +19,12 @@ from on_paper import print_page
 BYTES_MAX = 3_000_000
 SMALL = 700  # px; what plays is drawn many times, by software where no graphics card is
 ROOT = "document.documentElement.dataset"
+# What covers a part of the picture that one looks at.
+OVER_THE_SCENE = """(() => { const scene = document.querySelector('.canvas').getBoundingClientRect();
+  return [...document.querySelectorAll('.stage button, .stage input, .stage p')].filter(e => {
+    const r = e.getBoundingClientRect();
+    return r.height && r.top < scene.bottom - 1 && r.bottom > scene.top + 1 && r.left < scene.right - 1
+      && r.right > scene.left + 1; }).map(e => e.textContent); })()"""
 # (plan, task, cell that it was made for)
 PLANS = [
     ("peg_2d_fine", "peg_in_hole_2d_fine", None),
@@ -63,6 +69,8 @@ def look_at(browser, file, fragment, webgl, failures, pictures, served=None):
             failures.check(wide <= width, f"{name}: {wide} px wide")
             renderer = browser.evaluate("document.querySelector('.canvas').dataset.renderer")
             failures.check(renderer == ("webgl" if webgl else "svg"), f"{name}: drawn by {renderer}")
+            over = browser.evaluate(OVER_THE_SCENE)
+            failures.check(not over, f"{name}: over the scene stand {over}")
             for said in browser.said():
                 failures.check(False, f"{name}: says {said}")
             for url in browser.requests():

@@ -49,7 +49,7 @@ class Stage {
     const canvas = element("div", { class: "canvas" });
     this.views = element("div", { class: "views", role: "group", "aria-label": "Views" });
     this.now = element("aside", { class: "now", "aria-label": "What happens now" });
-    host.append(element("div", { class: "picture" }, canvas, this.views, ...controls, legend), this.now);
+    host.append(element("div", { class: "picture" }, this.views, canvas, ...controls, legend), this.now);
     this.picture = new ScenePicture(canvas, data);
     for (const view of this.picture.views) {
       const button = element("button", { type: "button" }, view.title);
