@@ -17,6 +17,7 @@
 #include "shared/config/load.h"
 #include "shared/system/fan_out.h"
 #include "shared/system/record_file.h"
+#include "shared/task/spread.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/evaluation_html.h"
 #include "sim/evaluation/evaluation_json.h"
@@ -112,10 +113,10 @@ int replay(const EvaluateLine& line, const Cell& cell, const sim::Evaluation& ev
   for (std::size_t plan = 0; plan < evaluation.candidates.size(); ++plan) {
     const sim::Candidate& candidate = evaluation.candidates[plan];
     const sim::Trial trial = evaluation.trial(plan, *line.only);
-    std::printf(
-        "%s, run %zu: %.2f standard deviations off%s, seed %llu (tenon-sim makes the same world)\n",
-        candidate.file.c_str(), trial.number, trial.distance, sim::tilt_text(trial).c_str(),
-        static_cast<unsigned long long>(trial.seed));
+    std::printf("%s, run %zu: %s%s, seed %llu (tenon-sim makes the same world)\n",
+                candidate.file.c_str(), trial.number,
+                out_text(evaluation.task, trial.distance).c_str(), sim::tilt_text(trial).c_str(),
+                static_cast<unsigned long long>(trial.seed));
     RecordReport black_box;
     const sim::TrialResult result =
         sim::TrialRunner(cell, evaluation.task, candidate).tell(trial, line.black_box, black_box);

@@ -215,11 +215,13 @@ class Report {
                "at the goal." +
                    shown) +
            "</div>\n" +
-           drawing::figure(
-               figure_of_draws(evaluation_, sample, view),
-               "Where the environment really stood, about where the plan believed it (green). "
-               "Rings: standard deviations." +
-                   shown) +
+           drawing::figure(figure_of_draws(evaluation_, sample, view),
+                           "Where the environment really stood, about where the plan believed it "
+                           "(green). " +
+                               std::string(task_.errors == Distribution::kUniform
+                                               ? "Square: the bounds."
+                                               : "Rings: standard deviations.") +
+                               shown) +
            drawing::figure(figure_of_ends(evaluation_, sample, view),
                            "Where the part ended about its goal, and the tolerance of " +
                                tolerance_text(task_.goal_tolerance_m, task_.goal_axes) + "." +
@@ -278,13 +280,13 @@ class Report {
     std::string html = kinds_table(i) + "<details><summary>" + std::to_string(failed.size()) +
                        (failed.size() == 1 ? " run" : " runs") +
                        " that failed</summary>\n<div class='wide'><table class='moves'><thead><tr>"
-                       "<th class='num'>Run</th><th class='num'>&sigma;</th><th>How</th>"
+                       "<th class='num'>Run</th><th class='num'>Off</th><th>How</th>"
                        "<th class='num'>Step</th><th>Outcome</th><th>Why, and how to see it again"
                        "</th></tr></thead>\n<tbody>\n";
     for (std::size_t k = 0; k < listed; ++k) {
       const Run* run = failed[k];
       html += "<tr><th scope='row' class='num'>" + std::to_string(run->trial.number) + "</th>" +
-              format("<td class='num' data-label='&sigma;'>%.2f</td>", run->trial.distance) +
+              "<td class='num' data-label='Off'>" + out_text(task_, run->trial.distance) + "</td>" +
               class_cell(run->result) + step_cells(run->result) + "<td>" +
               drawing::escaped(run->result.reason) + "<br><code>" +
               drawing::escaped(replay_command(evaluation_, candidate, run->trial.number)) +

@@ -7,6 +7,7 @@
 
 #include "shared/base/text.h"
 #include "shared/drawing/html.h"
+#include "shared/task/spread.h"
 #include "sim/evaluation/summary.h"
 
 namespace tenon::sim {
@@ -81,7 +82,7 @@ std::string verdict_of(const Evaluation& evaluation, const Candidate& candidate,
   const std::string element = no_run ? "error" : "failure";
   const std::string type = kind == TrialClass::kDoneButWrong ? to_string(kind) : result.ending;
   return "<" + element + attribute("message", result.reason) + attribute("type", type) + ">" +
-         in_xml(format("%.2f standard deviations off", run.trial.distance) + tilt_text(run.trial) +
+         in_xml(out_text(evaluation.task, run.trial.distance) + tilt_text(run.trial) +
                 "; made again by\n" + replay_command(evaluation, candidate, run.trial.number)) +
          "</" + element + ">";
 }

@@ -8,6 +8,7 @@
 
 #include "shared/base/text.h"
 #include "shared/task/pose_error.h"
+#include "shared/task/spread.h"
 #include "sim/evaluation/outline.h"
 #include "sim/evaluation/plot.h"
 
@@ -49,8 +50,9 @@ Plot plot_of(const Extent& extent, const drawing::View& view, int width_px) {
 
 std::string side_of(const drawing::View& view) { return std::string(view.title) + ": "; }
 
-std::string title_of(const Run& run) {
-  return format("run %zu, %.2f sigma: ", run.trial.number, run.trial.distance) + run.result.ending;
+std::string title_of(const Task& task, const Run& run) {
+  return format("run %zu, ", run.trial.number) + out_text(task, run.trial.distance) + ": " +
+         run.result.ending;
 }
 
 /// Seen from the environment it is the tool that is off.
@@ -67,7 +69,7 @@ std::optional<Point> ended_at(const Task& task, const Run& run, const drawing::V
 /// Successes as dots, then a cross for every other run, where `at` says; nothing where it says
 /// none.
 template <typename At>
-void mark(Plot& plot, const Candidate& candidate, double size_px, const At& at) {
+void mark(Plot& plot, const Task& task, const Candidate& candidate, double size_px, const At& at) {
   std::vector<Point> succeeded;
   for (const auto& [number, run] : candidate.runs) {
     if (classify(run.result) == TrialClass::kSucceeded) succeeded.push_back(*at(run));
@@ -78,7 +80,7 @@ void mark(Plot& plot, const Candidate& candidate, double size_px, const At& at) 
     for (const auto& [number, run] : candidate.runs) {
       if (classify(run.result) != kind) continue;
       const std::optional<Point> place = at(run);
-      if (place) failed.emplace_back(*place, title_of(run));
+      if (place) failed.emplace_back(*place, title_of(task, run));
     }
     plot.crosses(failed, 1.6 * size_px, colour_of(kind));
   }
@@ -244,7 +246,8 @@ std::string figure_of_runs(const Evaluation& evaluation, const Candidate& candid
                    std::string(succeeded ? "#333" : colour_of(kind)) + "'");
   }
   plot.dots(began, 3.0, "#444");
-  mark(plot, candidate, 6.0, [&](const Run& run) { return ended_at(task, run, view); });
+  mark(plot, evaluation.task, candidate, 6.0,
+       [&](const Run& run) { return ended_at(task, run, view); });
   return plot.svg(side_of(view) + "where each run went");
 }
 
@@ -260,7 +263,7 @@ std::string figure_of_draws(const Evaluation& evaluation, const Candidate& candi
   for (const auto& [number, run] : candidate.runs) extent.add(*at(run));
   Plot plot = plot_of(extent.widened(0.02), view, kNarrow_px);
   mark_reach(plot, evaluation.task, sigma);
-  mark(plot, candidate, 5.0, at);
+  mark(plot, evaluation.task, candidate, 5.0, at);
   plot.dots({Point::Zero()}, 8.0, kGoalColour);
   return plot.svg(side_of(view) + "where the environment stood in each run");
 }
@@ -276,7 +279,7 @@ std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candid
               "fill='#2a7f3f' fill-opacity='.07' stroke='#2a7f3f' stroke-width='1.5'");
   plot.line({-0.15 * tolerance_mm, 0.0}, {0.15 * tolerance_mm, 0.0}, "stroke='#2a7f3f'");
   plot.line({0.0, -0.15 * tolerance_mm}, {0.0, 0.15 * tolerance_mm}, "stroke='#2a7f3f'");
-  mark(plot, candidate, 4.0, [&](const Run& run) -> std::optional<Point> {
+  mark(plot, evaluation.task, candidate, 4.0, [&](const Run& run) -> std::optional<Point> {
     if (!run.result.error) return std::nullopt;
     return view.mm(run.result.error->head<3>());
   });

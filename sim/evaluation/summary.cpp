@@ -211,10 +211,10 @@ std::string describe(const Evaluation& evaluation) {
     const std::vector<const Run*> failed = failures(candidate);
     for (std::size_t i = 0; i < std::min(failed.size(), kShown); ++i) {
       const TrialResult& result = failed[i]->result;
-      text +=
-          format("  run %zu at %.2f sigma", failed[i]->trial.number, failed[i]->trial.distance) +
-          tilt_text(failed[i]->trial) + ", " + to_string(classify(result)) + ": " + result.reason +
-          "\n    " + replay_command(evaluation, candidate, failed[i]->trial.number) + "\n";
+      text += format("  run %zu, ", failed[i]->trial.number) +
+              out_text(evaluation.task, failed[i]->trial.distance) + tilt_text(failed[i]->trial) +
+              ", " + to_string(classify(result)) + ": " + result.reason + "\n    " +
+              replay_command(evaluation, candidate, failed[i]->trial.number) + "\n";
     }
     if (failed.size() > kShown) {
       text += format("  and %zu more (--json and --report have all)\n", failed.size() - kShown);

@@ -77,6 +77,15 @@ void TrialChain::record(Recording& recording) const {
   recording.add(std::move(moment));
 }
 
+std::string wrong_end_text(const Task& task, const Truth& truth) {
+  std::string text =
+      format("the part is %.2f mm, turned by %.2f degrees, from its goal (allowed: %s)",
+             1e3 * truth.error_norm_m, degrees(truth.error_norm_rad),
+             tolerance_text(task.goal_tolerance_m, task.goal_axes).c_str());
+  if (task.inserted) text += inserted(task, truth.tool) ? " and inserted" : " and not inserted";
+  return text;
+}
+
 TrialResult TrialChain::result() const {
   const executor::RunResult run = told();
   const Truth truth = virtual_cell_.truth();
@@ -96,11 +105,7 @@ TrialResult TrialChain::result() const {
   result.path_m.push_back(to_um(truth.tool.position_m));
   result.contact_force_N_max = truth.contact_force_N_max;
   if (result.done && !result.at_goal) {
-    result.reason += format(
-        "; the part is %.2f mm, turned by %.2f degrees, from its goal (allowed: %s) and %sinserted",
-        1e3 * truth.error_norm_m, degrees(truth.error_norm_rad),
-        tolerance_text(task_.goal_tolerance_m, task_.goal_axes).c_str(),
-        inserted(task_, truth.tool) ? "" : "not ");
+    result.reason += "; " + wrong_end_text(task_, truth);
   }
   if (truth.solver_messages > 0) {
     result.done = false;

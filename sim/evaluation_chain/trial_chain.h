@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "executor/dry_run/dry_run.h"
@@ -16,6 +17,7 @@
 #include "shared/task/task.h"
 #include "sim/cell/lockstep/lockstep.h"
 #include "sim/cell/lockstep/virtual_link.h"
+#include "sim/cell/virtual_arm/truth.h"
 #include "sim/cell/virtual_arm/virtual_cell.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/recording.h"
@@ -31,6 +33,10 @@ struct PreparedPlan {
   executor::DryRun dry_run;
   JointVector joints{};  ///< where the arm stands at first
 };
+
+/// Where the part is, of a run that was done and is not at the goal. Of whether it is inserted only
+/// where the task asks for that.
+[[nodiscard]] std::string wrong_end_text(const Task& task, const Truth& truth);
 
 class TrialChain {
  public:

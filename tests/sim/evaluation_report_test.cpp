@@ -94,7 +94,7 @@ TEST(EvaluationSummary, AFailureInAWorldThatIsTiltedTooFarBreaksNoPromise) {
   const std::string text = describe(evaluation);
   EXPECT_NE(text.find("of these tilted by at most 0.17 degrees, as the task has it: 3 of 3 ="),
             std::string::npos);
-  EXPECT_NE(text.find("run 4 at 2.50 sigma, tilted by 0.23 degrees, done_but_wrong"),
+  EXPECT_NE(text.find("run 4, 2.50 sigma out, tilted by 0.23 degrees, done_but_wrong"),
             std::string::npos);
   const auto json = nlohmann::json::parse(evaluation_json(evaluation));
   EXPECT_EQ(json["plans"][0]["summary"]["promised"]["runs"], 3);
@@ -200,6 +200,22 @@ TEST(EvaluationJunit, OnlyASuiteThatReachesItsBoundSkipsWhatFailed) {
   EXPECT_EQ(shortfall(small_evaluation(), 0.5), "");
   EXPECT_EQ(shortfall(small_evaluation(), 0.51),
             "plans/p.tnp: 3 of 6 runs succeeded, which is 0.5 and less than 0.51");
+}
+
+// A bound of 25 mm, which the runs that failed were beyond.
+TEST(EvaluationSummary, UniformErrorsAreToldInPartsOfTheirBounds) {
+  Evaluation evaluation = small_evaluation();
+  evaluation.task.errors = Distribution::kUniform;
+  evaluation.task.particle_sigmas = 2.0;
+  EXPECT_NE(describe(evaluation).find("run 4, at 125 % of the bounds, done_but_wrong"),
+            std::string::npos);
+  const std::string page = evaluation_html(evaluation);
+  EXPECT_EQ(count_of(page, "<title>run 4, at 125 % of the bounds"), 3U);
+  EXPECT_NE(page.find("Square: the bounds."), std::string::npos);
+  for (const char* other : {"sigma", "&sigma;", "standard deviations"}) {
+    EXPECT_EQ(page.substr(0, page.find("<script")).find(other), std::string::npos) << other;
+  }
+  EXPECT_NE(evaluation_junit(evaluation, {}).find("at 125 % of the bounds"), std::string::npos);
 }
 
 TEST(EvaluationHtml, StandsAloneAndMarksEveryFailure) {
