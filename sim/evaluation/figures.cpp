@@ -110,6 +110,7 @@ Extent extent_of_runs(const Task& task, const Candidate& candidate, const drawin
   for (const auto& [number, run] : candidate.runs) {
     if (const auto ended = ended_at(task, run, view)) {
       content.add(view.mm(began_at(task, candidate, run)));
+      for (const Vector3& reached_m : run.result.path_m) content.add(view.mm(reached_m));
       content.add(*ended);
     }
   }

@@ -14,6 +14,7 @@ import subprocess
 import tempfile
 
 from browser import Browser, run_test
+from on_paper import print_page
 from plan_page import BYTES_MAX, ROOT, SMALL, look_at, press
 
 # Worlds in which some runs of a plan fail, in several ways, and those in which none begins.
@@ -108,6 +109,21 @@ def replay(browser, name, results, failures):
     failures.check(not browser.said(), f"{name}: says something while it plays")
 
 
+# Of each picture that has ways of runs, those that leave its frame.
+CUT_OFF = """[...document.querySelectorAll('.plots .still svg[role=img]')].map(svg => {
+  const frame = svg.querySelector('.frame').getBBox();
+  return [...svg.querySelectorAll('[stroke-opacity]')].map(e => e.getBBox()).filter(b =>
+    b.x < frame.x - 1 || b.y < frame.y - 1 || b.x + b.width > frame.x + frame.width + 1
+    || b.y + b.height > frame.y + frame.height + 1).length; })"""
+
+
+def on_paper(browser, page, failures, pictures):
+    """Tables fit, and no way of a run is cut off."""
+    print_page(browser, page, failures, pictures)
+    cut = browser.evaluate(CUT_OFF)
+    failures.check(cut and not any(cut), f"{page.stem}: its pictures cut off {cut} ways")
+
+
 def main(failures):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("evaluate")
@@ -142,6 +158,8 @@ def main(failures):
                 browser.open(made[2][0])
                 browser.wait_for(f"{ROOT}.ready === 'true'")
                 choose(browser, f"two {webgl}", made[2][1], failures)
+                for page, _ in made:
+                    on_paper(browser, page, failures, arguments.pictures)
                 browser.open(made[3][0])
                 browser.wait_for(f"{ROOT}.ready === 'true'")
                 press(browser, " ")
