@@ -294,8 +294,9 @@ void read_physics(const Value& value, Task& task) {
   task.rollout_step_us = microseconds(step_s);
 }
 
-/// Every move may run at contact speed throughout.
-void check_time_for_a_step(const Value& primitives, const Task& task) {
+/// Every move may run at contact speed throughout. @param primitives null: its steps are as long as
+/// the starts' errors ask for, and errors that are so large are often in another unit
+void check_time_for_a_step(const Value* primitives, const Value& starts, const Task& task) {
   const SpeedLimits& speeds = task.motion.speeds;
   double step_s = 0.0;
   for (int axis = 0; axis < 6; ++axis) {
@@ -305,9 +306,21 @@ void check_time_for_a_step(const Value& primitives, const Task& task) {
   }
   const double timeout_s = 1e-6 * task.motion.timeout_us;
   if (step_s <= timeout_s) return;
-  primitives.refuse("a step takes " + format("%g", step_s) +
-                    " s at contact speed, contact.timeout_s is " + format("%g", timeout_s) +
-                    " s: shorter steps, more speed or more time");
+  const std::string times =
+      format("%g s at contact speed, contact.timeout_s is %g s", step_s, timeout_s);
+  if (primitives == nullptr) {
+    const bool turns = task.step_m / speeds.contact_mps < step_s;
+    const Vector6& sigma = task.starts.front().sigma;
+    const double error =
+        task.particle_sigmas * (turns ? sigma.tail<3>() : sigma.head<3>()).maxCoeff();
+    double part_m = 0.0;
+    for (const Shape& shape : task.held) part_m = std::max(part_m, shape.size_m.maxCoeff());
+    starts.refuse(
+        format("errors up to %g %s, of a part that measures %g m, ask for moves that take ", error,
+               turns ? "rad" : "m", part_m) +
+        times + ": are all lengths in m, all angles in rad?");
+  }
+  primitives->refuse("a step takes " + times + ": shorter steps, more speed or more time");
 }
 
 /// With the variant's name behind it, as long as a plan can hold.
@@ -364,7 +377,7 @@ Task load_task(const std::filesystem::path& name) {
   read_compliance(map.at("compliance"), task);
   read_contact(map.at("contact"), task);
   if (const auto search = map.find("search")) read_search(*search, task);
-  check_time_for_a_step(primitives ? *primitives : map.at("contact"), task);
+  check_time_for_a_step(primitives ? &*primitives : nullptr, map.at("starts"), task);
   return task;
 }
 

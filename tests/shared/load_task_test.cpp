@@ -342,5 +342,21 @@ TEST(TaskInserted, MustContainTheGoal) {
             ":10: goal.inserted: must contain the goal's position");
 }
 
+// The file has no step of its own that could be too long: it is the errors that are.
+TEST(LoadTask, StartsWhoseErrorsAskForEndlessMovesAreAskedForTheirUnit) {
+  const ScratchFolder folder;
+  std::string text = replaced(kPegTask, "sigma_m: [0.01, 0.01]", "uniform_m: [0.5, 0.5]");
+  text.resize(text.find("variants:"));
+  const std::size_t at = text.find("primitives:");
+  text.erase(at, text.find('\n', at) + 1 - at);
+  const std::string told = refusal([&] { (void)load_task(folder.put("x.yaml", text)); });
+  EXPECT_NE(
+      told.find(":9: starts: errors up to 0.5 m, of a part that measures 0.1 m, ask for moves "
+                "that take "),
+      std::string::npos)
+      << told;
+  EXPECT_NE(told.find("are all lengths in m"), std::string::npos) << told;
+}
+
 }  // namespace
 }  // namespace tenon
