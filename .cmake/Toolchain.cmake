@@ -1,8 +1,8 @@
 # How every file of Tenon is compiled.
 #
-# Release is -O2 with line numbers, and keeps assertions: an executor whose invariant is broken must
-# stop (the drives then stop by themselves on the lost heartbeat), not carry on. So what is tested
-# is what ships. Dev adds the standard library's own checks.
+# Release is -O2 (INNERMOST libraries -O3) with line numbers, and keeps assertions: an executor
+# whose invariant is broken must stop (the drives then stop by themselves on the lost heartbeat),
+# not carry on. So what is tested is what ships. Dev adds the standard library's own checks.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)

@@ -14,8 +14,8 @@
 namespace tenon::planner {
 namespace {
 
-// Some 50 MB. Whoever asks for more asks for what comes late anew.
-constexpr std::size_t kKnownMax = 100'000;
+// Some 50 MB, in two halves: when one is full, the other is forgotten, which is the older.
+constexpr std::size_t kHalf = 50'000;
 
 bool same(const MoveParameters& a, const MoveParameters& b) {
   const auto from = [](const MoveParameters& move) {
@@ -79,18 +79,24 @@ class RememberedRollout::Memory {
 
   std::optional<RolloutResult> known(const Question& question) {
     const std::lock_guard lock(mutex_);
-    const auto found = known_.find(question);
-    return found == known_.end() ? std::nullopt : std::optional(found->second);
+    for (const auto& half : {&known_, &older_}) {
+      const auto found = half->find(question);
+      if (found != half->end()) return found->second;
+    }
+    return std::nullopt;
   }
 
   void keep(Question question, const RolloutResult& result) {
     const std::lock_guard lock(mutex_);
-    if (known_.size() < kKnownMax) known_.emplace(std::move(question), result);
+    if (known_.size() == kHalf) older_ = std::exchange(known_, {});
+    known_.emplace(std::move(question), result);
   }
 
  private:
+  using Known = std::unordered_map<Question, RolloutResult, QuestionHash>;
   std::mutex mutex_;
-  std::unordered_map<Question, RolloutResult, QuestionHash> known_;
+  Known known_;
+  Known older_;
 };
 
 RememberedRollout::RememberedRollout(const Rollout& rollout)

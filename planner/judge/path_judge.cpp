@@ -109,8 +109,10 @@ Judgement PathJudge::at_once(const Plan& slow, std::span<const Chain> chains) {
   for (int attempt = 0; attempt < kSpeedAttempts; ++attempt) {
     Plan plan = with_slow_from(plain, distances_m);
     if (auto centred = with_last_move_centred(plan, chains, task_)) plan = *std::move(centred);
-    Certification certification = certified(plan);
-    judgement = at_speeds({std::move(plan), std::move(certification)}, distances_m);
+    // Who learns from all that miss needs them soonest, a search the move that is refused.
+    std::optional<Certification> certification;
+    if (misses_ == Misses::kFirst) certification = certified(plan);
+    judgement = at_speeds(plan, std::move(certification), distances_m);
     if (std::holds_alternative<JudgedPlan>(judgement) || !any_fast(distances_m)) break;
   }
   return judgement;
@@ -152,7 +154,8 @@ Judgement PathJudge::at_speed(const Candidate& slow) {
     Plan fast = with_slow_from(slow.plan, distances_m);
     if (auto again = misses_again(fast)) return *std::move(again);
     Certification certification = certified(fast);
-    judgement = at_speeds(centred(std::move(fast), std::move(certification)), distances_m);
+    Candidate tried = centred(std::move(fast), std::move(certification));
+    judgement = at_speeds(tried.plan, std::move(tried.certification), distances_m);
     if (std::holds_alternative<JudgedPlan>(judgement)) break;
   }
   return judgement;
@@ -161,7 +164,8 @@ Judgement PathJudge::at_speed(const Candidate& slow) {
 Judgement PathJudge::at_contact_speed(Candidate&& slow) {
   if (auto again = misses_again(slow.plan)) return *std::move(again);
   std::vector<double> throughout(slow.plan.steps.size(), 0.0);
-  return at_speeds(centred(std::move(slow.plan), std::move(slow.certification)), throughout);
+  Candidate tried = centred(std::move(slow.plan), std::move(slow.certification));
+  return at_speeds(tried.plan, std::move(tried.certification), throughout);
 }
 
 PathJudge::Candidate PathJudge::centred(Plan plan, Certification certification) {
@@ -173,19 +177,21 @@ PathJudge::Candidate PathJudge::centred(Plan plan, Certification certification) 
   return again.holds() ? Candidate{std::move(*moved), std::move(again)} : as_is;
 }
 
-Judgement PathJudge::at_speeds(Candidate&& candidate, std::vector<double>& distances_m) {
-  auto& [plan, certification] = candidate;
+Judgement PathJudge::at_speeds(const Plan& plan, std::optional<Certification> certification,
+                               std::vector<double>& distances_m) {
   const auto refuted = [&](Refutation refutation) {
     distances_m.assign(distances_m.size(), 0.0);
     return refutation;
   };
-  if (!certification.holds()) return refuted(refutation_of(certification));
+  if (certification && !certification->holds()) return refuted(refutation_of(*certification));
   Extremes extremes{corners_of(plan), {}};
   if (const auto miss = missed(plan, extremes.corners)) return refuted(*miss);
+  if (!certification) certification = certified(plan);
+  if (!certification->holds()) return refuted(refutation_of(*certification));
   extremes.rim = rim_of(plan);
   std::vector<Chain> good = good_chains(extremes.corners);
   append(good, good_chains(extremes.rim));
-  const Chain& known = certification.runs.front().chains.front();
+  const Chain& known = certification->runs.front().chains.front();
   if (const auto beyond = beyond_reach(with_envelopes(plan, task_, good), known)) {
     return refuted(*beyond);
   }
@@ -198,11 +204,11 @@ Judgement PathJudge::at_speeds(Candidate&& candidate, std::vector<double>& dista
   if (draws.empty() || shorten(plan, good, distances_m)) {
     return Refutation{{}, std::nullopt, "a start met a contact before the tool was slow"};
   }
-  append(good, chains_of(certification));
+  append(good, chains_of(*certification));
   std::variant<Plan, Refutation> judged = widened(plan, std::move(good));
   if (const auto* miss = std::get_if<Refutation>(&judged)) return refuted(*miss);
   if (const auto beyond = beyond_reach(std::get<Plan>(judged), known)) return refuted(*beyond);
-  return estimated(std::get<Plan>(std::move(judged)), std::move(certification), extremes);
+  return estimated(std::get<Plan>(std::move(judged)), *std::move(certification), extremes);
 }
 
 std::optional<Refutation> PathJudge::beyond_reach(const Plan& plan, const Chain& known) const {
@@ -262,8 +268,11 @@ Certification PathJudge::certified(const Plan& plan) {
 
 std::vector<Draw> PathJudge::corners_of(const Plan& plan) {
   const auto starts = corner_starts(plan, held_, start_, pool_.front());
-  return misses_ == Misses::kAll ? run(plan, starts, effort_.corners)
-                                 : run_to_miss(plan, starts, effort_.corners);
+  if (misses_ == Misses::kFirst) return run_to_miss(plan, starts, effort_.corners);
+  const auto run_some = [&](std::span<const JudgedStart> some) {
+    return run(plan, some, effort_.corners);
+  };
+  return run_past_miss(starts, task_.particle_sigmas, kAtOnce, run_some);
 }
 
 std::vector<Draw> PathJudge::rim_of(const Plan& plan) {

@@ -65,7 +65,7 @@ class PathJudge {
   /// What of the starts at the corners a refutation tells.
   enum class Misses : std::uint8_t {
     kFirst,  ///< the first that misses the goal
-    kAll,    ///< every one that does, unless a first look at some of them has found one
+    kAll,    ///< those among as many again as it takes to find one, see run_past_miss()
   };
 
   /// @param displacements of the path's steps, values that a plan file can hold
@@ -113,7 +113,9 @@ class PathJudge {
   [[nodiscard]] Judgement at_contact_speed(Candidate&& slow);
   /// Where the plan does not hold at its speeds, the distances are lowered, to be tried next. At
   /// contact speed throughout there is nothing to lower.
-  [[nodiscard]] Judgement at_speeds(Candidate&& candidate, std::vector<double>& distances_m);
+  /// @param certification made after the corners have been run where there is none
+  [[nodiscard]] Judgement at_speeds(const Plan& plan, std::optional<Certification> certification,
+                                    std::vector<double>& distances_m);
   /// Envelopes around the chains, widened to more draws until all of a batch stay within them: what
   /// one start in a hundred does is no reason to stop.
   [[nodiscard]] std::variant<Plan, Refutation> widened(const Plan& plan, std::vector<Chain> good);

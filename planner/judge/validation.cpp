@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "planner/belief/belief.h"
 #include "shared/base/fnv.h"
@@ -14,6 +17,21 @@ namespace {
 
 bool ends_at_goal(const Chain& chain, const Task& task) {
   return chain.done && inserted(task, chain.end()) && within_tolerance(task, chain.end());
+}
+
+/// Each index once, in the order of its binary digits read backwards (van der Corput): after so
+/// many no gap between them is wider than 4 count / many.
+std::vector<std::size_t> far_apart(std::size_t count) {
+  const std::size_t all = std::bit_ceil(count);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < all; ++i) {
+    std::size_t backwards = 0;
+    for (std::size_t bit = 1; bit < all; bit *= 2) {
+      backwards = 2 * backwards + ((i & bit) != 0 ? 1 : 0);
+    }
+    if (backwards < count) order.push_back(backwards);
+  }
+  return order;
 }
 
 }  // namespace
@@ -78,6 +96,31 @@ std::vector<Draw> run_starts(const Plan& plan, const Task& task,
   });
   if (last < draws.size()) draws.resize(last + 1);
   return draws;
+}
+
+std::vector<Draw> run_past_miss(
+    std::span<const JudgedStart> starts, double sigmas, std::size_t at_once,
+    const std::function<std::vector<Draw>(std::span<const JudgedStart>)>& run) {
+  const std::vector<std::size_t> order = far_apart(starts.size());
+  std::vector<std::optional<Draw>> ran(starts.size());
+  std::size_t enough = starts.size();
+  bool missed = false;
+  for (std::size_t i = 0; i < enough;) {
+    std::vector<JudgedStart> some;
+    for (std::size_t j = i; j < std::min(i + at_once, enough); ++j) {
+      some.push_back(starts[order[j]]);
+    }
+    std::vector<Draw> draws = run(some);
+    const bool first = !missed && missed_draw(draws, sigmas) != nullptr;
+    for (Draw& draw : draws) ran[order[i++]] = std::move(draw);
+    if (first) enough = std::min(2 * i, starts.size());
+    missed = missed || first;
+  }
+  std::vector<Draw> in_order;
+  for (std::optional<Draw>& draw : ran) {
+    if (draw) in_order.push_back(*std::move(draw));
+  }
+  return in_order;
 }
 
 void hold_extremes(const Plan& plan, const Task& task, const Start& start, Rollout& rollout,

@@ -66,6 +66,14 @@ inline constexpr std::size_t kDrawsMax = 100'000;
                                            std::span<const JudgedStart> starts, RolloutPool& pool,
                                            const std::function<bool(const Draw&)>& until = {});
 
+/// Runs as many starts again as it takes to find one that misses, all where none does. Those that
+/// miss are neighbours mostly, so they are run in an order in which neighbours are far apart.
+/// @param sigmas see missed_draw()  @param at_once so many are run before a look at them
+/// @param run starts through a plan  @return what was run, in the order of the starts
+[[nodiscard]] std::vector<Draw> run_past_miss(
+    std::span<const JudgedStart> starts, double sigmas, std::size_t at_once,
+    const std::function<std::vector<Draw>(std::span<const JudgedStart>)>& run);
+
 /// Corners and rim, with the first of errors_to_hold() that holds at all corners, or the last.
 /// A baseline has all of the task's, which it holds or not.
 /// @param rollout asked for collisions  @param run starts through the plan

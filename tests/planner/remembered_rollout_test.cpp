@@ -133,5 +133,21 @@ TEST_F(RememberedRolloutTest, CollisionsAreAskedAndThreadsMayShare) {
   EXPECT_EQ(asked, first);
 }
 
+// A long judgement asks for more than memory takes; what it has just asked for it asks for again.
+TEST_F(RememberedRolloutTest, WhatWasAskedForLastIsKnownHoweverMuchCameBefore) {
+  constexpr int kMoves = 260'000;
+  constexpr int kAgain = 50'000;
+  for (int i = 0; i < kMoves; ++i) {
+    move.displacement.x() = 1e-9 * i;
+    (void)rollout.simulate(particle, move, 2000);
+  }
+  EXPECT_EQ(asked, kMoves);
+  for (int i = kMoves - kAgain; i < kMoves; ++i) {
+    move.displacement.x() = 1e-9 * i;
+    (void)rollout.simulate(particle, move, 2000);
+  }
+  EXPECT_EQ(asked, kMoves);
+}
+
 }  // namespace
 }  // namespace tenon::planner

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "planner/belief/belief.h"
 #include "planner/judge/refutation.h"
@@ -354,6 +355,44 @@ TEST(Validation, DrawsThatWereStoppedInOneStepAreOneLine) {
   EXPECT_NE(text.find(" degrees from the goal; 1 more beside it\n"), std::string::npos) << text;
   // The statistics have each.
   EXPECT_EQ(missed(report, task).size(), 4U);
+}
+
+/// Runs starts whose friction says which they are; those of `misses` miss.
+std::vector<double> ran_past(const std::vector<double>& misses, std::size_t count) {
+  std::vector<JudgedStart> starts(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    starts[i].particle.physics.friction = static_cast<double>(i);
+  }
+  const auto run = [&](std::span<const JudgedStart> some) {
+    std::vector<Draw> draws;
+    for (const JudgedStart& start : some) {
+      Draw& draw = draws.emplace_back();
+      draw.chain.start = start.particle;
+      draw.at_goal = std::ranges::find(misses, start.particle.physics.friction) == misses.end();
+    }
+    return draws;
+  };
+  std::vector<double> ran;
+  for (const Draw& draw : run_past_miss(starts, 2.0, 10, run)) {
+    ran.push_back(draw.chain.start.physics.friction);
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(ran));
+  EXPECT_EQ(std::ranges::adjacent_find(ran), ran.end());
+  return ran;
+}
+
+TEST(Validation, OfManyStartsAsManyMoreAreRunAsItTakesToFindOneThatMisses) {
+  for (const std::size_t count : {1U, 2U, 7U, 64U, 1000U}) {
+    EXPECT_EQ(ran_past({}, count).size(), count);
+  }
+  EXPECT_EQ(ran_past({0.0}, 1000).size(), 20U) << "the first batch and another";
+  EXPECT_EQ(ran_past({}, 0).size(), 0U);
+  // Ten neighbours of a thousand are met early, wherever they are.
+  for (double first = 0.0; first < 990.0; first += 30.0) {
+    std::vector<double> misses;
+    for (int i = 0; i < 10; ++i) misses.push_back(first + i);
+    EXPECT_LE(ran_past(misses, 1000).size(), 400U) << first;
+  }
 }
 
 }  // namespace
