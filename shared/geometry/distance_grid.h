@@ -47,7 +47,7 @@ class DistanceGrid {
   struct Between {
     std::array<std::size_t, 2> brick{};
     std::array<std::size_t, 2> within{};
-    double low_m = 0.0;
+    std::array<double, 2> node_m{};
     double part = 0.0;
   };
   /// @return whether both are there
@@ -59,10 +59,14 @@ class DistanceGrid {
     for (std::size_t side = 0; side < 2; ++side) {
       found.brick[side] = (low + side) / kEdge * stride_[i];
       found.within[side] = (low + side) % kEdge * (i == 0 ? kEdge * kEdge : i == 1 ? kEdge : 1);
+      found.node_m[side] = node_m(axis, low + side);
     }
     found.part = scaled - static_cast<double>(low);
-    found.low_m = low_m_[axis] + static_cast<double>(low) * spacing_m_;
     return true;
+  }
+  /// The same to the last bit from whichever cell it is asked for: what is computed there is kept.
+  [[nodiscard]] double node_m(Eigen::Index axis, std::size_t number) const {
+    return low_m_[axis] + static_cast<double>(number) * spacing_m_;
   }
   [[nodiscard]] Node& node(std::size_t brick, std::size_t within) const {
     Brick* known = bricks_[brick].load(std::memory_order_acquire);
@@ -93,7 +97,7 @@ std::optional<double> DistanceGrid::at_least_m(const Vector3& point_m, const Exa
   const Vector3 scaled = per_m_ * (point_m - low_m_);
   std::size_t brick = 0;
   std::size_t within = 0;
-  Vector3 node_m;
+  Vector3 nearest_m;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<Eigen::Index>(axis);
     if (!(scaled[i] >= 0.0 && scaled[i] < last_[axis])) return std::nullopt;
@@ -101,10 +105,10 @@ std::optional<double> DistanceGrid::at_least_m(const Vector3& point_m, const Exa
     const std::size_t nearest = scaled[i] - static_cast<double>(low) < 0.5 ? low : low + 1;
     brick += nearest / kEdge * stride_[axis];
     within = within * kEdge + nearest % kEdge;
-    node_m[i] = low_m_[i] + static_cast<double>(nearest) * spacing_m_;
+    nearest_m[i] = node_m(i, nearest);
   }
-  const double distance_m = distance_at(node(brick, within), node_m, exact_m);
-  return distance_m - (point_m - node_m).norm();
+  const double distance_m = distance_at(node(brick, within), nearest_m, exact_m);
+  return distance_m - (point_m - nearest_m).norm();
 }
 
 template <typename Exact>
@@ -124,11 +128,9 @@ std::optional<DistanceGrid::Sample> DistanceGrid::at(const Vector3& point_m,
     const std::size_t at_z = row >> 1U;
     std::array<double, 2> end_m{};
     for (std::size_t at_x = 0; at_x < 2; ++at_x) {
-      const Vector3 offset(static_cast<double>(at_x), static_cast<double>(at_y),
-                           static_cast<double>(at_z));
       end_m[at_x] = distance_at(node(x.brick[at_x] + y.brick[at_y] + z.brick[at_z],
                                      x.within[at_x] + y.within[at_y] + z.within[at_z]),
-                                Vector3(x.low_m, y.low_m, z.low_m) + spacing_m_ * offset, exact_m);
+                                {x.node_m[at_x], y.node_m[at_y], z.node_m[at_z]}, exact_m);
     }
     slope_x[row] = end_m[1] - end_m[0];
     along_x_m[row] = end_m[0] + x.part * slope_x[row];

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "shared/base/random.h"
 #include "shared/geometry/extrusion.h"
@@ -153,6 +154,30 @@ TEST(Solid, SampledPlacesAreThoseOfTheSurfaceButForItsEdges) {
   EXPECT_LT(flat_most_m, 1e-8);  // a float's, at these sizes
   EXPECT_LT(most_m, 0.6 * kSpacing_m);
   EXPECT_GT(most_m, 0.05 * kSpacing_m);
+}
+
+TEST(Solid, SampledPlacesAreTheSameWhateverWasAskedBefore) {
+  // A node is computed by whoever needs it first, from any of the eight cells around it. Next to
+  // the faces across the longest way, which go through nodes, a distance shows every rounding.
+  const TriangleMesh mesh = tests::example_parts().at("keyed_socket.stl");
+  const Solid forwards(mesh);
+  const Solid backwards(mesh);
+  const Solid bounded(mesh);
+  Random random(6);
+  std::vector<Vector3> points_m(20'000);
+  for (Vector3& point_m : points_m) {
+    point_m = Vector3(0.5, 0.2, 0.2).cwiseProduct(forwards.size_m()) +
+              drawn_in(random, 0.05 * forwards.size_m());
+  }
+  std::vector<double> distances_m;
+  for (const Vector3& point_m : points_m) {
+    distances_m.push_back(forwards.sampled_place(point_m).distance_m);
+    (void)bounded.distance_at_least_m(point_m);
+  }
+  for (std::size_t i = points_m.size(); i-- > 0;) {
+    ASSERT_EQ(backwards.sampled_place(points_m[i]).distance_m, distances_m[i]) << i;
+    ASSERT_EQ(bounded.sampled_place(points_m[i]).distance_m, distances_m[i]) << i;
+  }
 }
 
 TEST(Solid, NoPlaceIsNearerThanItsLowerBound) {
