@@ -68,8 +68,6 @@ BY_TEST = {
     "tenon-monitor": "monitor.TheDashboardBesideARealRun",
     "tenon-plan --new-task plug.stl socket.obj --uniform-mm 2 -o task.yaml": "planning.Assemblies",
     "tenon-plan task.yaml -o plan.tnp": "planning.Assemblies",
-    "tenon-evaluate --cell cell.yaml --task task.yaml --plan plan.tnp --experiment worlds.yaml -n 200 --seed 1 "
-    "--junit evaluation.xml --min-success 0.99": "schemas.TheJunitFileIsWhatCiToolsRead",
     "sim/experiments/assemblies.sh FOLDER": "planning.Assemblies",
 }
 # (pattern, reason)
