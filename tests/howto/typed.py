@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How-tos, typed word by word, one after the other in one folder: their ```yaml blocks are saved under the name in
 their first line, their ```sh blocks are run in order, and every line of the ``` block that follows one must begin a
-line of what was printed.
+line of what was printed. Of a CI file the jobs' `script` is run as well.
 
   typed.py BIN SOURCE HOWTO...     in a network namespace of its own, where all ports are free
 
@@ -11,17 +11,18 @@ import contextlib
 import json
 import os
 import pathlib
-import re
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from how_to import BLOCK, FILES, is_job, job_commands, save  # pylint: disable=wrong-import-position
+
 ATTEMPTS = 10
 # Where the virtual arm got no time, the executor hears nobody.
 EXCUSES = {"overruns", "blind", "bus_silent", "feedback_missing", "feedback_poor"}
-BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.M | re.S)
 
 
 def was_too_busy(folder):
@@ -49,8 +50,8 @@ def type_in(text, folder, environment):
     """@return what it printed"""
     runs = "--can" in text
     for attempt in range(1, ATTEMPTS + 1):
-        for left in ("ready", "result.json") if runs else ():
-            (folder / left).unlink(missing_ok=True)
+        if runs:
+            (folder / "result.json").unlink(missing_ok=True)
         status, said = run_in_bash(text, folder, environment)
         if status == 0:
             return said
@@ -68,21 +69,25 @@ def main():
     typed = told = 0
     with tempfile.TemporaryDirectory(prefix="tenon_howto_") as name:
         folder = pathlib.Path(name)
-        (folder / "hw").symlink_to(pathlib.Path(source).resolve() / "hw")
-        printed = ""
+        for room in ("hw", "planner"):
+            (folder / room).symlink_to(pathlib.Path(source).resolve() / room)
+        printed = before = ""
         for kind, text in BLOCK.findall("\n".join(pathlib.Path(howto).read_text() for howto in howtos)):
-            if kind == "yaml":
-                file = re.match(r"# (\S+)\n", text).group(1)
-                (folder / file).write_text(text)
+            if kind in FILES:
+                save(text, folder)
+                for command in job_commands(text, "script") if is_job(text) else ():
+                    printed = type_in(command, folder, environment)
+                    typed += 1
             elif kind == "sh":
                 printed = type_in(text, folder, environment)
                 typed += 1
-            else:
+            elif before == "sh":
                 lines = printed.splitlines()
                 for line in text.splitlines():
                     told += 1
                     if not any(one.startswith(line) for one in lines):
                         raise SystemExit(f"FAILED: nothing begins with\n{line}\nin\n{printed}")
+            before = kind
         pages = sorted(page.name for page in folder.glob("*.html"))
         print(f"{typed} blocks typed, {told} lines came as told; pages: {', '.join(pages)}")
     return 0 if typed and told else 1

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Every command of the READMEs: typed here word by word, or run by a test that is named, or exempt for a reason that is
-printed. A command that nobody has thought of fails, and so does a word about a command that no README has.
+"""Every command of the READMEs and how-tos: typed here word by word, or run by a test that is named, or exempt for a
+reason that is printed. A command that nobody has thought of fails, and so does a word about a command that no document
+has. What a how-to marks as typed (```sh) tests/howto types, and it has to know the how-to.
 
   commands.py BIN RUNS SOURCE BUILD          types what takes seconds
   commands.py BIN RUNS SOURCE BUILD --slow   types what takes minutes
@@ -20,12 +21,14 @@ import sys
 import tempfile
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from how_to import BLOCK, DRAWN, FILES, file_name, is_job, job_commands  # pylint: disable=wrong-import-position
 from markdown_links import dead_links  # pylint: disable=wrong-import-position
 
 STARTS = re.compile(r"(\./|build/|sim/|tests/|tenon-|cmake |ctest |apt-get |ip link |slcand |parallel |sbatch |mkdir |unshare "
                     r"|lcm-gen |[A-Z_]+=\S)")
 FOLDERS = ("planner", "executor", "hw", "sim", "shared", "lcmtypes", "tests")
-BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.M | re.S)
+# No documents for those who use it: what has been, and files byte by byte.
+NO_HOW_TOS = {"CHANGELOG.md", "PROTOCOL.md", "FORMAT.md"}
 
 # The plan of the READMEs is one that the build makes by the READMEs' own words, see tests/plans/CMakeLists.txt.
 PLAN = "box_4_gantry3"
@@ -84,6 +87,8 @@ EXEMPT = [
     (r"tenon-plan (TASK\.yaml|--check TASK\.yaml|--new-task PLUG SOCKET) \[.*", "a synopsis; package's tests hold options"),
     (r'ARGS=".*|parallel tenon-evaluate \$ARGS .*|tenon-evaluate \$ARGS .*|sbatch .*',
      "needs GNU parallel or Slurm and hours; chain's tests shard and merge"),
+    (r"apt-get update|apt-get install --yes \./packages/tenon_\*\.deb",
+     "a CI machine's own preparation; package's tests install the packages in a clean root"),
     (r"tests/guest/.*|unshare --net --map-root-user .*", "./test.sh guest is this"),
 ]
 # Blocks of a language, by their first words, and the test that runs them.
@@ -98,6 +103,10 @@ LANGUAGES = {
 
 def readmes(source):
     return [file for file in documents(source) if file.name == "README.md"]
+
+
+def how_tos(source):
+    return [file for file in documents(source) if file.name not in {"README.md", *NO_HOW_TOS}]
 
 
 def documents(source):
@@ -116,23 +125,35 @@ def commands_of(text):
 
 
 def collect(source):
-    """(where, command) of all READMEs, and (where, language, text) of blocks in a language."""
+    """(where, command) of all documents, (where, language, text) of blocks in a language, and how many are drawings."""
     commands, blocks, pictures = [], [], 0
-    for file in readmes(source):
+    for file in readmes(source) + how_tos(source):
         text = file.read_text(encoding="utf-8")
+        before = ""
         for match in BLOCK.finditer(text):
             where = f"{file.relative_to(source)}:{text.count(chr(10), 0, match.start()) + 2}"
-            if match[1]:
-                blocks.append((where, match[1], match[2]))
-            elif STARTS.match(match[2]) or match[2].startswith("#!"):
-                commands += [(where, command) for command in commands_of(match[2])]
-            else:
+            printed, before = before == "sh" and not match[1], match[1]
+            if match[1] == DRAWN:
                 pictures += 1
+            elif match[1]:
+                blocks.append((where, match[1], match[2]))
+                commands += [(where, command) for command in (job_commands(match[2], "before_script")
+                                                              if match[1] in FILES and is_job(match[2]) else ())]
+            elif STARTS.match(match[2]) or match[2].startswith("#!"):
+                commands += [] if printed else [(where, command) for command in commands_of(match[2])]
+            else:
+                pictures += not printed
     return commands, blocks, pictures
 
 
+def typed_how_tos(source):
+    """Those that tests/howto types, in its order."""
+    lists = (source / "tests/howto/CMakeLists.txt").read_text(encoding="utf-8")
+    return re.findall(r"\$\{PROJECT_SOURCE_DIR\}/(\S+\.md)", lists)
+
+
 def account(source):
-    """Prints how each command is taken care of. @return the commands that are not, and the words that no README has"""
+    """Prints how each command is taken care of. @return the commands that are not, and the words that no document has"""
     commands, blocks, pictures = collect(source)
     failures = []
     unused = {*TYPED, *SLOW, *BY_TEST}
@@ -149,17 +170,24 @@ def account(source):
         else:
             failures.append(f"{where}: nobody types '{command}', and no reason says why not")
         unused.discard(command)
-    failures += [f"no README has '{command}' any more" for command in sorted(unused)]
+    failures += [f"no document has '{command}' any more" for command in sorted(unused)]
+    typed = typed_how_tos(source)
+    by_how_to = 0
     for where, language, text in blocks:
+        if where.split(":")[0] in typed and (language == "sh" or (language in FILES and file_name(text))):
+            by_how_to += language == "sh"
+            continue
         named = [test for (kind, begin), test in LANGUAGES.items() if kind == language and text.startswith(begin)]
         if not named:
             failures.append(f"{where}: no test runs this block of {language}")
+    failures += [f"{name}: no how-to, and tests/howto types it" for name in typed if source / name not in how_tos(source)]
     failures += [f"a dead link: {link}" for link in dead_links(documents(source))]
     for name in sorted({*BY_TEST.values(), *LANGUAGES.values()}):
         if not is_there(source, name):
             failures.append(f"there is no test '{name}'")
-    print(f"{len(commands)} commands of {len(readmes(source))} READMEs: {counts['typed']} typed, {counts['by a test']} run by a "
-          f"test of their own, {sum(map(len, exempt.values()))} exempt; {len(blocks)} blocks of a language, {pictures} pictures")
+    print(f"{len(commands)} commands of {len(readmes(source))} READMEs and {len(how_tos(source))} how-tos: {counts['typed']} typed, "
+          f"{counts['by a test']} run by a test of their own, {sum(map(len, exempt.values()))} exempt; {by_how_to} blocks that "
+          f"tests/howto types; {len(blocks) - by_how_to} blocks of another language, {pictures} pictures")
     for reason, of in exempt.items():
         print(f"exempt, {reason}:")
         for line in of:
