@@ -24,13 +24,16 @@ install(DIRECTORY tests/examples DESTINATION ${data}/tests COMPONENT runtime FIL
 install(DIRECTORY shared/config/schemas DESTINATION ${data}/shared/config COMPONENT runtime)
 install(PROGRAMS demo.sh DESTINATION ${data} COMPONENT runtime)
 # What one of them links to is installed too, or is no link.
-foreach(document README.md planner/FIRST_TASK.md planner/README.md executor/README.md executor/WATCH.md hw/README.md
-                 hw/PROTOCOL.md sim/README.md lcmtypes/README.md shared/plan/FORMAT.md shared/drawing/page/README.md)
+foreach(document README.md planner/FIRST_TASK.md planner/HOW_IT_PLANS.md planner/README.md executor/README.md
+                 executor/WATCH.md hw/README.md hw/PROTOCOL.md hw/YOUR_ARM.md sim/CI.md sim/README.md lcmtypes/README.md
+                 shared/ARCHITECTURE.md shared/README.md shared/plan/FORMAT.md shared/drawing/page/README.md)
   get_filename_component(folder ${document} DIRECTORY)
   install(FILES ${document} DESTINATION ${data}/${folder} COMPONENT runtime)
 endforeach()
 
-install(DIRECTORY planner/pictures DESTINATION ${data}/planner COMPONENT runtime)
+foreach(folder planner executor hw sim shared)
+  install(DIRECTORY ${folder}/pictures DESTINATION ${data}/${folder} COMPONENT runtime)
+endforeach()
 
 # Manual pages and completion are what the installed programs say of themselves.
 find_program(GZIP gzip REQUIRED)
