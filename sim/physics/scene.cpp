@@ -153,9 +153,10 @@ SurfaceContact::Stand Scene::stand(const Pair& pair) const {
   return {held.pose(), environment.pose(), held.offset_m() + environment.offset_m(), moved_m_};
 }
 
-double Scene::touch_surfaces(const Watched& watched, std::vector<dContactGeom>& points) const {
+double Scene::touch_surfaces(const Watched& watched, std::vector<dContactGeom>& points,
+                             double enough_m) const {
   const std::size_t before = points.size();
-  const double gap_m = watched.surfaces->find(stand(watched.pair), points);
+  const double gap_m = watched.surfaces->find(stand(watched.pair), points, enough_m);
   for (std::size_t i = before; i < points.size(); ++i) {
     points[i].g1 = held_[watched.pair.held].id();
     points[i].g2 = environment_[watched.pair.environment].id();
@@ -188,10 +189,10 @@ double Scene::overlap_m(double enough_m) {
     }
     if (watched.surfaces) {
       std::vector<dContactGeom> points;
-      const double gap_m = touch_surfaces(watched, points);
+      const double gap_m = touch_surfaces(watched, points, enough_m);
       overlap_m = std::max(overlap_m, deepest_m(points));
       if (gap_m > kDrawnTo_m || overlap_m > enough_m) continue;
-      overlap_m = std::max(overlap_m, watched.surfaces->common_depth_m(stand(watched.pair)));
+      overlap_m = watched.surfaces->common_depth_m(stand(watched.pair), overlap_m, enough_m);
     } else {
       const auto one = prism_contact(held, environment);
       overlap_m = std::max(overlap_m, one ? static_cast<double>(one->depth)

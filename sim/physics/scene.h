@@ -109,7 +109,8 @@ class Scene {
   [[nodiscard]] SurfaceContact::Stand stand(const Pair& pair) const;
   /// The same from their surfaces. @param points to which those that touch are added
   /// @return a gap, m, as SurfaceContact::find()
-  double touch_surfaces(const Watched& watched, std::vector<dContactGeom>& points) const;
+  double touch_surfaces(const Watched& watched, std::vector<dContactGeom>& points,
+                        double enough_m = std::numeric_limits<double>::infinity()) const;
 
   std::vector<Watched> watched_;  // all pairs
   bool solids_ = false;           // among the shapes

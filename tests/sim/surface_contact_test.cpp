@@ -16,6 +16,7 @@
 #include "sim/physics/rollout/compliant_tool.h"
 #include "sim/physics/rollout/ode_rollout.h"
 #include "sim/physics/scene.h"
+#include "tests/support/example_parts.h"
 #include "tests/support/meshes.h"
 
 namespace tenon::sim {
@@ -261,6 +262,41 @@ TEST(SurfaceContact, APartThatIsPutSomewhereTouchesAsIfNothingWereKnown) {
   }
   EXPECT_GT(touched, 300);
   EXPECT_LT(touched, 1450);
+}
+
+TEST(SurfaceContact, WhoHasFoundEnoughMayStopButSaysTheSame) {
+  const auto parts = tests::example_parts();
+  const auto drawn = [&](const std::string& name, const std::string& file) {
+    const Shape shape = solid_shape(name, parts.at(file), {});
+    return solid_shape(name, parts.at(file), {shape.solid->centre_m(), {1, 0, 0, 0}});
+  };
+  const Shape plug = drawn("plug", "keyed_peg.stl");
+  const Shape socket = drawn("socket", "keyed_socket.stl");
+  OdeWorld world;
+  CompliantTool tool(world, {});
+  Scene scene({plug}, {socket});
+  scene.attach(tool.body());
+  Random random(31);
+  int deep = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double reach_m = i % 2 == 0 ? 1e-3 : 20e-3;
+    Pose pose = at(0, 0, i % 2 == 0 ? 0.001 : 0.02);
+    for (int axis = 0; axis < 3; ++axis) {
+      pose.position_m[axis] += 2.0 * reach_m * (random.uniform() - 0.5);
+    }
+    pose.orientation = rotation_of({0.05 * random.uniform(), 0.05 * random.uniform(), 0.0});
+    tool.place(pose);
+    tool.show();
+    const double enough_m = 2e-3 * random.uniform();
+    const double stopped_m = scene.overlap_m(enough_m);
+    scene.moved_anywhere();
+    const double whole_m = scene.overlap_m();
+    EXPECT_LE(stopped_m, whole_m + 1e-12) << i;
+    ASSERT_EQ(stopped_m > enough_m, whole_m > enough_m) << i;
+    deep += whole_m > enough_m;
+  }
+  EXPECT_GT(deep, 40);
+  EXPECT_LT(deep, 160);
 }
 
 TEST(SurfaceContact, ALargerPartStandsOutOnAllSides) {

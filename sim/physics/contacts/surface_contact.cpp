@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "shared/geometry/common_depth.h"
@@ -218,24 +219,38 @@ void SurfaceContact::note_beside(const Side& side, std::uint32_t index, const Po
   beside_.push_back({&side == &held_, index, at.outwards});
 }
 
+std::vector<Vector3> SurfaceContact::ways_apart(const Side& side, const Pose& X_SE) const {
+  // Of directions: of a fine round side a few do for all.
+  constexpr double kSame = 0.05;
+  const bool held = &side == &held_;
+  std::vector<Vector3> ways;
+  for (const Found& found : found_) {
+    if (found.depth_m <= 0.0) continue;
+    const Vector3 way =
+        found.held == held ? found.outwards : Vector3(-(X_SE.orientation * found.outwards));
+    const auto same = [&](const Vector3& known) { return known.isApprox(way, kSame); };
+    // The latest first: what lies side by side on a face is found one after the other.
+    if (std::none_of(ways.rbegin(), ways.rend(), same)) ways.push_back(way);
+  }
+  return ways;
+}
+
 void SurfaceContact::look_beside(const Stand& stand) {
   constexpr double kInwards_m = 1e-4;
   constexpr double kSameWay = 0.9;
-  const std::size_t others = found_.size();
+  if (beside_.empty()) return;
+  const Pose X_EH = edges_in_surface(held_, stand);
+  const Pose X_HE = edges_in_surface(environment_, stand);
+  const std::vector<Vector3> apart_in_E = ways_apart(held_, X_EH);
+  const std::vector<Vector3> apart_in_H = ways_apart(environment_, X_HE);
   for (const Beside& beside : beside_) {
-    Side& side = beside.held ? held_ : environment_;
-    const Pose X_SE = edges_in_surface(side, stand);
+    const Side& side = beside.held ? held_ : environment_;
+    const Pose& X_SE = beside.held ? X_EH : X_HE;
+    const std::vector<Vector3>& apart = beside.held ? apart_in_E : apart_in_H;
     const Vector3 inwards = X_SE.orientation * side.edges->inwards(beside.piece);
     const Vector3 way = (inwards - inwards.dot(beside.outwards) * beside.outwards).normalized();
-    const bool held_apart =
-        std::any_of(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(others),
-                    [&](const Found& found) {
-                      const Vector3 outwards = found.held == beside.held
-                                                   ? found.outwards
-                                                   : Vector3(-(X_SE.orientation * found.outwards));
-                      return found.depth_m > 0.0 && outwards.dot(way) > kSameWay;
-                    });
-    if (held_apart) continue;
+    const auto holds = [&](const Vector3& outwards) { return outwards.dot(way) > kSameWay; };
+    if (std::any_of(apart.begin(), apart.end(), holds)) continue;
     const Surface::Piece& piece = side.edges->pieces()[beside.piece];
     const std::vector<Vector3>& points_m = side.edges->points_m();
     const Vector3 at_m = point_in(X_SE, 0.5 * (points_m[piece.from] + points_m[piece.to]));
@@ -248,7 +263,8 @@ void SurfaceContact::look_beside(const Stand& stand) {
   }
 }
 
-double SurfaceContact::common_depth_m(const Side& side, const Pose& X_SE, double offset_m) {
+double SurfaceContact::common_depth_m(const Side& side, const Pose& X_SE, double offset_m,
+                                      double known_m, double enough_m) {
   const Surface& edges = *side.edges;
   const auto other_m = [&](const Vector3& point_m) {
     const Vector3 there_m = point_in(X_SE, point_m);
@@ -257,10 +273,10 @@ double SurfaceContact::common_depth_m(const Side& side, const Pose& X_SE, double
     return side.surface->place(there_m, 0).distance_m - offset_m;
   };
   const auto own_m = [&](const Vector3& point_m) { return edges.place(point_m, 0).distance_m; };
-  double deepest_m = 0.0;
+  double deepest_m = known_m;
   std::vector<std::uint32_t> waiting;
   if (!edges.balls().empty()) waiting.push_back(0);
-  while (!waiting.empty()) {
+  while (!waiting.empty() && deepest_m <= enough_m) {
     const Surface::Ball& ball = edges.balls()[waiting.back()];
     waiting.pop_back();
     if (other_m(ball.centre_m) > ball.radius_m + kDrawnTo_m) continue;
@@ -272,19 +288,18 @@ double SurfaceContact::common_depth_m(const Side& side, const Pose& X_SE, double
       const std::uint32_t index = edges.order()[i];
       const Surface::Piece& piece = edges.pieces()[index];
       const Vector3 middle_m = 0.5 * (edges.points_m()[piece.from] + edges.points_m()[piece.to]);
-      deepest_m = std::max(deepest_m,
-                           tenon::common_depth_m(middle_m, edges.inwards(index), own_m, other_m));
+      deepest_m = tenon::common_depth_m(middle_m, edges.inwards(index), own_m, other_m, deepest_m);
     }
   }
   return deepest_m;
 }
 
-double SurfaceContact::common_depth_m(const Stand& stand) const {
-  if (!exact_) return 0.0;
-  double deepest_m = 0.0;
+double SurfaceContact::common_depth_m(const Stand& stand, double known_m, double enough_m) const {
+  double deepest_m = known_m;
+  if (!exact_) return deepest_m;
   for (const Side* side : {&held_, &environment_}) {
     const Pose X_SE = edges_in_surface(*side, stand);
-    deepest_m = std::max(deepest_m, common_depth_m(*side, X_SE, stand.offset_m));
+    deepest_m = common_depth_m(*side, X_SE, stand.offset_m, deepest_m, enough_m);
   }
   return deepest_m;
 }
@@ -299,7 +314,24 @@ void SurfaceContact::choose(const Stand& stand, std::vector<dContactGeom>& point
   }
 }
 
-double SurfaceContact::find(const Stand& stand, std::vector<dContactGeom>& points) {
+bool SurfaceContact::deeper(Side& side, std::uint32_t piece, const Stand& stand, double enough_m) {
+  ++time_;
+  found_.clear();
+  (void)look_at(side, piece, edges_in_surface(side, stand), stand);
+  return std::any_of(found_.begin(), found_.end(),
+                     [&](const Found& found) { return found.depth_m > enough_m; });
+}
+
+double SurfaceContact::find(const Stand& stand, std::vector<dContactGeom>& points,
+                            double enough_m) {
+  for (Side* side : {&held_, &environment_}) {
+    // Next to where it was deep enough the last time it mostly still is.
+    if (std::isinf(enough_m) || !side->deep) continue;
+    if (deeper(*side, *side->deep, stand, enough_m)) {
+      choose(stand, points);
+      return 0.0;
+    }
+  }
   ++time_;
   found_.clear();
   beside_.clear();
@@ -310,8 +342,17 @@ double SurfaceContact::find(const Stand& stand, std::vector<dContactGeom>& point
     for (const std::uint32_t piece : side->near) {
       double& apart_until_m = side->apart_until_m[piece];
       if (apart_until_m <= stand.moved_m) {
+        const std::size_t before = found_.size();
         const double gap_m = look_at(*side, piece, X_SE, stand);
         apart_until_m = stand.moved_m + std::max(0.0, gap_m - kEarly_m);
+        const bool enough =
+            std::any_of(found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
+                        [&](const Found& found) { return found.depth_m > enough_m; });
+        if (enough) {
+          side->deep = piece;
+          choose(stand, points);
+          return 0.0;
+        }
       }
       until_m = std::min(until_m, apart_until_m);
     }

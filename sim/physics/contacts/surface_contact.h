@@ -4,6 +4,7 @@
 #include <ode/ode.h>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -26,13 +27,16 @@ class SurfaceContact {
     double moved_m = 0.0;   ///< no point has moved farther, since forget(), against the other
   };
   /// Appends the points that touch; normals are towards the held one, `g1` and `g2` are left open.
+  /// @param enough_m where something is deeper, the rest need not be found
   /// @return a gap, m: nothing touches before the two have moved so far; 0 where something does
-  double find(const Stand& stand, std::vector<dContactGeom>& points);
+  double find(const Stand& stand, std::vector<dContactGeom>& points,
+              double enough_m = std::numeric_limits<double>::infinity());
 
   /// How deep the two are in each other at edges that lie on each other's surface, as those of
   /// faces side by side do, which tell no depth (common_depth.h); nothing that is remembered has a
-  /// part in it. @return m, of several such edges the most; 0 where there is none
-  [[nodiscard]] double common_depth_m(const Stand& stand) const;
+  /// part in it. @param known_m of their depth, which is returned where no such edge tells more
+  /// @param enough_m where one tells more, the others are not looked at  @return m
+  [[nodiscard]] double common_depth_m(const Stand& stand, double known_m, double enough_m) const;
 
   /// The two may have moved anywhere.
   void forget();
@@ -62,7 +66,8 @@ class SurfaceContact {
       double at_least_m = 0.0;          ///< of its distance
       std::uint64_t at_least_time = 0;  ///< likewise
     };
-    std::vector<Point> points;  ///< of the edges
+    std::vector<Point> points;          ///< of the edges
+    std::optional<std::uint32_t> deep;  ///< the piece that was last as deep as was asked for
   };
   /// The edges of a side in the frame of its surface.
   [[nodiscard]] Pose edges_in_surface(const Side& side, const Stand& stand) const;
@@ -72,11 +77,14 @@ class SurfaceContact {
   /// be little. Empty where only places tell.
   std::optional<double> distance_at_least_m(Side& side, std::uint32_t piece,
                                             const Pose& X_SE) const;
+  /// Whether a piece is. It looks at nothing else, and finds its points anew.
+  bool deeper(Side& side, std::uint32_t piece, const Stand& stand, double enough_m);
   /// @return a gap, m
   double look_at(Side& side, std::uint32_t piece, const Pose& X_SE, const Stand& stand);
 
   /// Of one side's pieces.
-  [[nodiscard]] static double common_depth_m(const Side& side, const Pose& X_SE, double offset_m);
+  [[nodiscard]] static double common_depth_m(const Side& side, const Pose& X_SE, double offset_m,
+                                             double known_m, double enough_m);
 
   /// In the frame of the surface that is touched.
   struct Found {
@@ -95,6 +103,8 @@ class SurfaceContact {
   /// Keeps a piece that is such. @param at one of its ends
   void note_beside(const Side& side, std::uint32_t piece, const Pose& X_SE,
                    const Surface::Place& at);
+  /// Which ways what was found pushes a side's edges, in the frame of its surface, each once.
+  [[nodiscard]] std::vector<Vector3> ways_apart(const Side& side, const Pose& X_SE) const;
   /// Where nothing else was found that holds the two apart across such a piece: the faces that do.
   void look_beside(const Stand& stand);
   void add(const Found& found, const Stand& stand, std::vector<dContactGeom>& points) const;

@@ -71,7 +71,7 @@ class ShapeGeometry {
   double oversize_m_ = 0.0;
   MeshDistances distances_;
   dGeomID geometry_;
-  std::unique_ptr<const Surface> surface_;
+  std::shared_ptr<const Surface> surface_;
 };
 
 }  // namespace tenon::sim

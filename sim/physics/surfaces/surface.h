@@ -99,7 +99,7 @@ class Surface {
 };
 
 /// Of a shape as drawn, in the frame of its centre.
-[[nodiscard]] std::unique_ptr<const Surface> surface_of(const Shape& shape,
+[[nodiscard]] std::shared_ptr<const Surface> surface_of(const Shape& shape,
                                                         MeshDistances distances);
 
 }  // namespace tenon::sim

@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <numbers>
+#include <utility>
 
 #include "shared/geometry/solid.h"
 #include "sim/physics/surfaces/surface.h"
@@ -150,16 +154,31 @@ class SolidSurface final : public Surface {
   bool sampled_;
 };
 
+/// Every thread and every pair of shapes asks for the surface of the same body: it is made once for
+/// as long as somebody has it.
+std::shared_ptr<const Surface> surface_of_solid(const std::shared_ptr<const Solid>& solid,
+                                                MeshDistances distances) {
+  static std::mutex mutex;
+  static std::map<std::pair<const Solid*, MeshDistances>, std::weak_ptr<const Surface>> made;
+  const std::lock_guard lock(mutex);
+  // A surface keeps its body: one that is still there is of no other at the same address.
+  if (auto known = made[{solid.get(), distances}].lock()) return known;
+  std::erase_if(made, [](const auto& one) { return one.second.expired(); });
+  auto surface = std::make_shared<const SolidSurface>(solid, distances);
+  made[{solid.get(), distances}] = surface;
+  return surface;
+}
+
 }  // namespace
 
-std::unique_ptr<const Surface> surface_of(const Shape& shape, MeshDistances distances) {
+std::shared_ptr<const Surface> surface_of(const Shape& shape, MeshDistances distances) {
   switch (shape.kind) {
     case Shape::Kind::kBox:
-      return std::make_unique<BoxSurface>(shape.size_m);
+      return std::make_shared<BoxSurface>(shape.size_m);
     case Shape::Kind::kCylinder:
-      return std::make_unique<CylinderSurface>(shape.size_m);
+      return std::make_shared<CylinderSurface>(shape.size_m);
     case Shape::Kind::kSolid:
-      return std::make_unique<SolidSurface>(shape.solid, distances);
+      return surface_of_solid(shape.solid, distances);
   }
   assert(false);
   return nullptr;
