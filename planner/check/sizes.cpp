@@ -37,6 +37,16 @@ std::string units_meant(double largest_m) {
   return text.empty() ? "" : ": did you mean " + text + "? sizes are in m";
 }
 
+/// Of a part that is too small: what made metres of its file.
+std::string scale_meant(const Shape& shape) {
+  const double meant_m = 1e3 * shape.size_m.maxCoeff();
+  if (shape.kind != Shape::Kind::kSolid || meant_m > kPartMax_m || meant_m < kPartMin_m) return "";
+  return format(
+      ": did you mean 1000 times that (%.4g m)? a mesh's scale is 0.001 where its file "
+      "is in mm, 1 where it is in m",
+      meant_m);
+}
+
 /// From the tool frame's origin to the box around a shape, m.
 double beyond(const Shape& shape) {
   const Vector3 inside_m = compose(inverse(shape.pose), {}).position_m;
@@ -52,7 +62,7 @@ std::vector<Finding> doubtful_sizes(const Task& task) {
         {Finding::Weight::kDoubt, key_of(list, shape, i) +
                                       format(" measures %g x %g x %g m, %s", shape.size_m.x(),
                                              shape.size_m.y(), shape.size_m.z(), why) +
-                                      units_meant(shape.size_m.maxCoeff())});
+                                      units_meant(shape.size_m.maxCoeff()) + scale_meant(shape)});
   };
   double nearest_m = std::numeric_limits<double>::infinity();
   double largest_m = 0.0;

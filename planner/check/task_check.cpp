@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "planner/belief/belief.h"
 #include "planner/check/sizes.h"
@@ -107,6 +108,7 @@ class Checker {
                               "the part is: nothing is left to plan");
     }
     if (!free) return;
+    corners(start, what);
     checked.touches = touchable(task_, start, probe_);
     untouched(start, checked.touches);
   }
@@ -157,6 +159,29 @@ class Checker {
       return false;
     }
     return true;
+  }
+
+  /// Uniform errors reach to where all of them are at their bounds. @param what of the start
+  void corners(const Start& start, const std::string& what) {
+    if (task_.errors != Distribution::kUniform) return;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Pose tool = start.pose;
+      std::string where;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double bound_m = task_.particle_sigmas * start.sigma[axis];
+        const int sign = (corner >> static_cast<unsigned>(axis) & 1U) != 0 ? 1 : -1;
+        tool = moved(tool, axis, sign * bound_m);
+        if (bound_m > 0.0) where += format(" %s%s", sign_text(sign), axis_name(axis));
+      }
+      const auto overlap = probe_.deepest(tool);
+      if (!overlap) continue;
+      std::string text =
+          what + " is free at each of its bounds, but where all errors are at theirs,";
+      text += where + ", " + overlap_text(*overlap, task_);
+      text += ": no such world can be; lower a bound or move the start";
+      add(Weight::kDoubt, std::move(text));
+      return;
+    }
   }
 
   void untouched(const Start& start, const std::vector<Touch>& touches) {

@@ -16,7 +16,10 @@ enum class FileKind : std::uint8_t {
   kDrive,
   kSensor,
   kExperiment,
-  kFriction
+  kFriction,
+  kResult,      ///< of a run, never asked for by these loaders
+  kTruth,       ///< likewise
+  kEvaluation,  ///< likewise
 };
 
 /// Refuses a document that has the keys of another kind and none of its own: "FILE: is a cell file,
@@ -24,7 +27,8 @@ enum class FileKind : std::uint8_t {
 /// what is missing. @throws InputError
 void expect_kind(const std::filesystem::path& file, const Value& document, FileKind wanted);
 
-/// Refuses a plan or a log of messages where YAML was asked for. @throws InputError
+/// Refuses a plan, a log of messages, a part, a page or a URDF where YAML was asked for, and says
+/// where it goes. @throws InputError
 void expect_text(const std::filesystem::path& file, const std::string& text);
 
 /// What a text is that is no plan: "is a task file, not a plan file; a task file goes first with

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -23,9 +24,25 @@ namespace {
 
 constexpr std::size_t kFileMax_bytes = 16U << 20U;
 
+/// Where a file stands that is named without its folder and its end: "gantry3".
+std::string shipped_meant(const std::filesystem::path& file) {
+  constexpr std::array<const char*, 3> kFolders = {"hw/cells", "planner/tasks", "sim/experiments"};
+  if (file.has_parent_path()) return "";
+  for (const char* folder : kFolders) {
+    std::error_code error;
+    std::filesystem::path meant = std::filesystem::path(folder) / file;
+    if (meant.extension() != ".yaml") meant += ".yaml";
+    if (std::filesystem::is_regular_file(meant, error)) {
+      return "; did you mean " + meant.string() + "?";
+    }
+  }
+  return "";
+}
+
 /// A file beside the one that is not there; nothing where none has a name like its.
 std::string file_meant(const std::filesystem::path& file) {
   constexpr int kFilesMax = 1000;
+  if (std::string shipped = shipped_meant(file); !shipped.empty()) return shipped;
   std::error_code error;
   std::vector<std::string> names;
   std::filesystem::path folder = file.parent_path();

@@ -1,5 +1,6 @@
 #include "shared/config/load_shapes.h"
 
+#include <array>
 #include <utility>
 
 #include "shared/base/error.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr std::size_t kShapesMax = 200;
 constexpr std::size_t kCornersMax = 300;
 constexpr double kScaleMax = 1000.0;
+constexpr std::array<const char*, 5> kKinds = {"box_m", "cylinder", "ring", "extrusion", "mesh"};
 
 Ring read_ring(const Value& value, const std::string& name, const Pose& pose) {
   const Map map(value, {"inner_diameter_m", "outer_diameter_m", "length_m", "segments"});
@@ -93,9 +95,14 @@ std::vector<Shape> ShapeReader::read_shape(const Value& value) {
   const auto ring = map.find("ring");
   const auto extrusion = map.find("extrusion");
   const auto mesh = map.find("mesh");
-  if (box.has_value() + cylinder.has_value() + ring.has_value() + extrusion.has_value() +
-          mesh.has_value() !=
-      1) {
+  std::string given;
+  for (const char* key : kKinds) {
+    if (map.find(key)) given += std::string(given.empty() ? "" : " and ") + key;
+  }
+  if (given.find(' ') != std::string::npos) {
+    value.refuse("has " + given + ": an entry is one shape; give each an entry of its own");
+  }
+  if (given.empty()) {
     value.refuse(
         "needs one of box_m: [x, y, z], cylinder: {diameter_m: d, length_m: l}, "
         "ring: {inner_diameter_m: i, outer_diameter_m: o, length_m: l}, "

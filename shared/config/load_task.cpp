@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "shared/base/fnv.h"
 #include "shared/base/text.h"
@@ -9,6 +8,7 @@
 #include "shared/config/files.h"
 #include "shared/config/load.h"
 #include "shared/config/load_shapes.h"
+#include "shared/config/load_starts.h"
 #include "shared/config/variant.h"
 #include "shared/config/yaml_value.h"
 #include "shared/motion/move_parameters.h"
@@ -23,108 +23,14 @@ using config::Bounds;
 using config::kSizeMax_m;
 using config::Map;
 using config::positive_to;
+using config::read_axes;
 using config::Value;
 
-constexpr std::size_t kStartsMax = 200;
-constexpr double kBoundOverSigma = std::numbers::sqrt3;  // of a uniform distribution
 constexpr std::uint8_t kRotations = 0b111000;
 constexpr std::uint8_t kAllAxes = 0b111111;
 
 std::uint32_t microseconds(double time_s) {
   return static_cast<std::uint32_t>(std::llround(1e6 * time_s));
-}
-
-/// [x, y, rz] as a mask.
-CoordinateMask read_axes(const Value& value) {
-  unsigned mask = 0;
-  for (const Value& axis : value.list(1, 6)) {
-    const unsigned bit = 1U << axis.choice({kAxisNames.begin(), kAxisNames.end()});
-    if ((mask & bit) != 0) axis.refuse_value("listed once");
-    mask |= bit;
-  }
-  return static_cast<CoordinateMask>(mask);
-}
-
-/// One number for each search coordinate of a kind, in the order x y z or rx ry rz.
-void read_errors(const Map& map, const char* key, int first_axis, CoordinateMask coordinates,
-                 Vector6& error) {
-  std::size_t count = 0;
-  std::string names;
-  for (int axis = first_axis; axis < first_axis + 3; ++axis) {
-    if (!has(coordinates, axis)) continue;
-    ++count;
-    names.append(" ").append(kAxisNames[axis]);
-  }
-  if (count == 0) {
-    if (const auto given = map.find(key)) given->refuse("no search coordinate has this unit");
-    return;
-  }
-  const Value given = map.at(key);
-  if (const std::size_t written = given.entries_written(); written != 0 && written != count) {
-    given.refuse(format("has %zu entries, must have %zu, for", written, count) + names);
-  }
-  const std::vector<Value> values = given.list(count, count);
-  auto next = values.begin();
-  for (int axis = first_axis; axis < first_axis + 3; ++axis) {
-    if (!has(coordinates, axis)) continue;
-    if (next->is_zero()) {
-      next->refuse_value(std::string("in (0, 1]; where ") + kAxisNames[axis] +
-                         " is known, leave it out of coordinates");
-    }
-    error[axis] = (next++)->number(positive_to(1.0));
-  }
-}
-
-Map start_map(const Value& value) {
-  return {value, {"name", "pose", "sigma_m", "sigma_rad", "uniform_m", "uniform_rad"}};
-}
-
-/// The first start's keys decide for all.
-Distribution distribution_of(const Value& start) {
-  const Map map = start_map(start);
-  return map.find("uniform_m") || map.find("uniform_rad") ? Distribution::kUniform
-                                                          : Distribution::kNormal;
-}
-
-void read_reach(const Map& map, Task& task) {
-  map.optional_number("particle_sigmas", positive_to(5.0), task.particle_sigmas);
-  if (task.errors == Distribution::kNormal) return;
-  if (const auto given = map.find("particle_sigmas")) {
-    given->refuse(
-        "counts standard deviations of normal errors (sigma_m, sigma_rad); a plan for "
-        "uniform ones holds to their bounds");
-  }
-  task.particle_sigmas = kBoundOverSigma;
-}
-
-Start read_start(const Value& value, const Task& task, std::set<std::string>& names) {
-  const Map map = start_map(value);
-  Start start;
-  start.name = map.at("name").name();
-  if (!names.insert(start.name).second) map.at("name").refuse_value("unique among the starts");
-  start.pose = map.at("pose").pose();
-  const bool uniform = task.errors == Distribution::kUniform;
-  for (const char* other :
-       {uniform ? "sigma_m" : "uniform_m", uniform ? "sigma_rad" : "uniform_rad"}) {
-    if (const auto given = map.find(other)) {
-      given->refuse(
-          "normal errors (sigma_m, sigma_rad) and uniform ones (uniform_m, uniform_rad) do "
-          "not mix in a task");
-    }
-  }
-  read_errors(map, uniform ? "uniform_m" : "sigma_m", 0, task.coordinates, start.sigma);
-  read_errors(map, uniform ? "uniform_rad" : "sigma_rad", 3, task.coordinates, start.sigma);
-  if (uniform) start.sigma /= kBoundOverSigma;
-
-  // Nothing moves the tool along the other axes.
-  const Vector6 way = displacement_between(start.pose, task.goal);
-  for (int axis = 0; axis < 6; ++axis) {
-    if (has(task.coordinates, axis) || std::abs(way[axis]) <= 1e-9) continue;
-    map.at("pose").refuse("is " + std::to_string(std::abs(way[axis])) + (axis < 3 ? " m" : " rad") +
-                          " off the goal along " + axis_name(axis) +
-                          ", which is not a search coordinate");
-  }
-  return start;
 }
 
 /// `tolerances: {z_m: 0.005, ry_rad: 0.02}` and `free: [rz]`.
@@ -276,8 +182,8 @@ void read_physics(const Value& value, Task& task) {
   const Map map(value, {"friction", "contact_stiffness_Npm", "oversize_m", "tilt_rad",
                         "sensor_error_m", "rollout_step_s"});
   const Map friction(map.at("friction"), {"low", "nominal", "high"});
-  task.friction.low = friction.number("low", {0.0, 2.0});
-  task.friction.nominal = friction.number("nominal", {task.friction.low, 2.0});
+  task.friction.nominal = friction.number("nominal", {0.0, 2.0});
+  task.friction.low = friction.number("low", {0.0, task.friction.nominal});
   task.friction.high = friction.number("high", {task.friction.nominal, 2.0});
   task.contact_stiffness_Npm = map.number("contact_stiffness_Npm", {1e2, 1e8});
   map.optional_number("oversize_m", {0.0, 0.01}, task.oversize_m);
@@ -355,16 +261,11 @@ Task load_task(const std::filesystem::path& name) {
   task.hash = fnv1a_64((variant ? text + "#" + *variant : text) + shapes.contents());
 
   read_goal(map.at("goal"), task);
-  std::set<std::string> start_names;
-  const std::vector<Value> starts = map.at("starts").list(1, kStartsMax);
-  task.errors = distribution_of(starts.front());
-  for (const Value& start : starts) {
-    task.starts.push_back(read_start(start, task, start_names));
-  }
+  config::read_starts(map.at("starts"), task);
   if (const auto about = map.find("error_about_m")) {
     task.error_about_m = about->vector({-kSizeMax_m, kSizeMax_m});
   }
-  read_reach(map, task);
+  config::read_reach(map, task);
 
   const auto primitives = map.find("primitives");
   if (primitives) {

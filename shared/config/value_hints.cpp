@@ -30,15 +30,17 @@ struct Unit {
 
 // The longer ends first: what ends in _mps does not end in _s. Bounds of lengths are metres that no
 // hand or arm reaches, so that whatever is beyond them is in millimetres.
-constexpr std::array<Unit, 9> kUnits = {{{"_m2", "m^2", "mm^2", 1e6},
-                                         {"_mps", "m/s", "mm/s", 1e3},
-                                         {"_mps2", "m/s^2", "mm/s^2", 1e3},
-                                         {"_m", "m", "mm", 1e3, 1.0},
-                                         {"_s", "s", "ms", 1e3},
-                                         {"_kg", "kg", "g", 1e3},
-                                         {"_Nm", "Nm", "Nmm", 1e3},
-                                         {"_radps", "rad/s", "degrees/s", 180.0 / std::numbers::pi},
-                                         {"_rad", "rad", "degrees", 180.0 / std::numbers::pi}}};
+constexpr std::array<Unit, 10> kUnits = {
+    {{"_m2", "m^2", "mm^2", 1e6},
+     {"_mps", "m/s", "mm/s", 1e3},
+     {"_mps2", "m/s^2", "mm/s^2", 1e3},
+     {"_Npm", "N/m", "N/mm", 1e-3},
+     {"_m", "m", "mm", 1e3, 1.0},
+     {"_s", "s", "ms", 1e3},
+     {"_kg", "kg", "g", 1e3},
+     {"_Nm", "Nm", "Nmm", 1e3},
+     {"_radps", "rad/s", "degrees/s", 180.0 / std::numbers::pi},
+     {"_rad", "rad", "degrees", 180.0 / std::numbers::pi}}};
 
 const Unit* unit_of(std::string_view path) {
   while (path.ends_with(']')) path = path.substr(0, path.rfind('['));
@@ -70,9 +72,11 @@ std::string unit_hint(std::string_view path, double number, const Bounds& bounds
   const Unit* unit = unit_of(path);
   if (unit == nullptr || !std::isfinite(number)) return {};
   const double meant = number / unit->per_unit;
-  // Nobody writes a fraction of a small unit.
+  // Nobody writes a fraction of a small unit. Of a large one, few.
   const double bound = std::max(std::abs(bounds.low), std::abs(bounds.high));
-  const bool other_unit = std::abs(number) >= std::max(unit->beyond * bound, 1.0);
+  const bool other_unit = unit->per_unit < 1.0
+                              ? number < bounds.low
+                              : std::abs(number) >= std::max(unit->beyond * bound, 1.0);
   if (!other_unit || !bounds.holds(meant)) return {};
   return "; is it in " + std::string(unit->other) + "? then write " + format("%.4g", meant) + " " +
          std::string(unit->name);
@@ -82,7 +86,9 @@ std::string key_hint(std::string_view key) {
   const bool digits = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
     return std::isdigit(c) != 0;
   });
-  return digits ? "; a decimal comma ends a number here: write a decimal point" : "";
+  if (digits) return "; a decimal comma ends a number here: write a decimal point";
+  const bool radius = key.find("radius") != std::string_view::npos;
+  return radius ? "; a round shape's size is its diameter, twice the radius" : "";
 }
 
 std::string tab_hint(std::string_view text, int line) {

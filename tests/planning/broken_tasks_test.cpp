@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -114,6 +115,21 @@ TEST(BrokenTasks, NoPushThatIsSaidToTouchGoesThroughAWall) {
   // Outside of the wall wall_nx, at x = -600, is nearer, but in the plane no move leads there.
   EXPECT_NE(ended.out.find("touches along +x: wall_px, at (450, -200, 2)"), std::string::npos);
   EXPECT_NE(ended.out.find("touches along -x: wall_nx, at (-450, -200, 2)"), std::string::npos);
+}
+
+TEST(BrokenTasks, AFileByItsNameAloneIsSoughtWhereItShips) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder.path() / "hw" / "cells");
+  folder.put("hw/cells/bench.yaml", "name: bench\n");
+  const Ended ended =
+      run(folder, {"/bin/sh", "-c", "cd \"$0\" && exec \"$@\"", folder.path().string(),
+                   executable("tenon-plan"), in_tree("planner/tasks/box_on_table_2d.yaml"),
+                   "--cell", "bench", "--output", "plan.tnp"});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_NE(ended.err.find("bench: cannot be read: No such file or directory; did you mean "
+                           "hw/cells/bench.yaml?"),
+            std::string::npos)
+      << ended.err;
 }
 
 TEST(BrokenTasks, ARingIsOnePart) {
