@@ -76,6 +76,8 @@ install(FILES .cmake/package/tenon-config.cmake .cmake/FindLCM.cmake .cmake/Find
 
 # --- for Python; where Debian's looks below /usr. Elsewhere PYTHONPATH has to name it. -----------------------
 install(DIRECTORY shared/python/tenon DESTINATION lib/python3/dist-packages COMPONENT python FILES_MATCHING PATTERN "*.py")
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/VERSION CONTENT "@PROJECT_VERSION@\n" @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/package/VERSION DESTINATION lib/python3/dist-packages/tenon COMPONENT python)
 install(FILES shared/python/README.md DESTINATION ${data}/shared/python COMPONENT python)
 
 # --- Debian packages: cpack --config build/release/CPackConfig.cmake ---------------------------------------

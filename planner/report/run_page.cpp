@@ -105,8 +105,8 @@ std::string step_row(const Plan& plan, const RecordedStep& step, std::size_t num
   const bool good = step.deviation.empty();
   return format(
              "<tr data-span='%zu'><th scope='row'><button type='button' class='jump' "
-             "data-span='%zu'>%zu</button></th>",
-             number, number, step.step) +
+             "data-span='%zu' aria-label='Step %zu'>%zu</button></th>",
+             number, number, step.step, step.step) +
          "<td data-label='Move'>" + drawing::displacement_text(planned) +
          "</td><td data-label='Outcome'" + (good ? "" : " class='stopped'") + ">" +
          to_string(step.outcome) + " <span class='term'>(" + expected_outcomes(planned) +

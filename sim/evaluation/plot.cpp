@@ -1,5 +1,6 @@
 #include "sim/evaluation/plot.h"
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -19,15 +20,25 @@ Point extent(const Plot::Axis& right, const Plot::Axis& up) {
   return {right.high - right.low, up.high - up.low};
 }
 
-/// 1, 2 or 5 times a power of ten.
+int ticks_on(const Plot::Axis& axis, double step) {
+  return static_cast<int>(std::floor(axis.high / step + 1e-9) - std::ceil(axis.low / step - 1e-9)) +
+         1;
+}
+
+/// 1, 2 or 5 times a power of ten: the least that is wide enough, or so many as tell a scale.
 double tick_step(const Plot::Axis& axis, double px_per_unit) {
+  constexpr int kTicksMin = 3;
+  constexpr std::array<double, 7> kFactors = {0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0};
   if (axis.powers_of_ten) return 1.0;
   const double wanted = kTick_px / px_per_unit;
   const double power = std::pow(10.0, std::floor(std::log10(wanted)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= wanted) return factor * power;
+  double step = kFactors.front() * power;
+  for (const double factor : kFactors) {
+    if (ticks_on(axis, factor * power) < kTicksMin) break;
+    step = factor * power;
+    if (step >= wanted) break;
   }
-  return 10.0 * power;
+  return step;
 }
 
 std::string tick_text(const Plot::Axis& axis, double value) {

@@ -108,8 +108,10 @@ def check_project(cmake, prefix, source, folder, failures):
 
 def check_python(prefix, folder, failures):
     said = run("/usr/bin/python3", "-B", "-c", "import tenon; plan = tenon.read_plan('plan.tnp'); print(tenon.__file__, "
-               "plan.task_name, len(plan.steps))", cwd=folder, env={"PYTHONPATH": str(prefix / "lib/python3/dist-packages")})
-    failures.check(said.startswith(str(prefix)) and "box_on_table_2d" in said, f"the Python package says {said}")
+               "tenon.__version__, plan.task_name, len(plan.steps))", cwd=folder, env={"PYTHONPATH": str(prefix / "lib/python3/dist-packages")})
+    file, version, task, _ = said.split()
+    failures.check(file.startswith(str(prefix)) and task == "box_on_table_2d", f"the Python package says {said}")
+    return version
 
 
 def main(failures):
@@ -128,7 +130,8 @@ def main(failures):
                       "--cell", "hw/cells/gantry3.yaml", cwd=prefix / "share/tenon")
         failures.check("nothing stands against" in checked, f"--check from the installation says {checked}")
         check_project(cmake, prefix, source, folder, failures)
-        check_python(prefix, folder, failures)
+        version = check_python(prefix, folder, failures)
+        failures.check(version == wanted, f"tenon.__version__ is {version}, not {wanted}")
 
 
 if __name__ == "__main__":

@@ -15,6 +15,9 @@ from .errors import FileError, LogWarning
 from .log import Log, Run, read_log, read_run
 from .plan import OUTCOMES, OutcomeRule, ParameterSet, Plan, Step, read_plan
 from .records import Record, Records, read_result, read_truth
+from .version import version
+
+__version__ = version()
 
 __all__ = [
     "FileError", "LogWarning", "Log", "Run", "read_log", "read_run", "OUTCOMES", "OutcomeRule", "ParameterSet", "Plan",
