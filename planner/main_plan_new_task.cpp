@@ -66,11 +66,11 @@ int write_new_task(const NewTaskArguments& a) {
   task.fit = planner::fit_of(task.plug.solid, task.socket.solid, task.X_SP);
   std::fputs(planner::findings(task).c_str(), stdout);
   if (task.fit.overlap_m > planner::kTouching_m) {
-    throw InputError(
-        format("assembled the two parts overlap by %.3f mm or more, of which %.3f mm may be rounding: are "
-               "both files in one frame? If not, give the plug's place in the socket's frame "
-               "(--goal X Y Z RX RY RZ); else make the plug smaller",
-               1e3 * task.fit.overlap_m, 1e3 * planner::kTouching_m));
+    throw InputError(format(
+        "assembled the two parts overlap by %.3f mm or more, of which %.3f mm may be rounding: are "
+        "both files in one frame? If not, give the plug's place in the socket's frame "
+        "(--goal X Y Z RX RY RZ); else make the plug smaller",
+        1e3 * task.fit.overlap_m, 1e3 * planner::kTouching_m));
   }
   if (!task.fit.way_out) {
     std::fprintf(stderr,

@@ -233,7 +233,7 @@ class Planning {
       progress_.tell(way ? guide_followed(guide, way->moves.size()) : guide_left(guide, left));
       if (!way) return false;
       doing_ = "judging a way";
-      Judgement judgement = judge_.judge(way->moves, PathJudge::Misses::kAll, way->plain);
+      Judgement judgement = judge_.judge(way->moves, PathJudge::Asker::kGuide, way->plain);
       if (auto* judged = std::get_if<JudgedPlan>(&judgement)) {
         report_.guide = guide_text(guide);
         keep(std::move(*judged), way->moves, SearchResult{});

@@ -46,10 +46,10 @@ PathJudge::PathJudge(const Task& task, const Start& start, const Parameters& par
       pool_(pool),
       now_s_(std::move(now_s)) {}
 
-Judgement PathJudge::judge(std::span<const Vector6> displacements, Misses misses,
+Judgement PathJudge::judge(std::span<const Vector6> displacements, Asker asker,
                            std::span<const std::size_t> plain) {
   missed_.clear();
-  misses_ = misses;
+  asker_ = asker;
   try {
     return judged(displacements, plain);
   } catch (const Stopped&) {
@@ -70,11 +70,11 @@ Judgement PathJudge::judged(std::span<const Vector6> displacements,
         run(slow, screening_starts(slow, held_, start_, pool_.front()), effort_.corners);
     if (missed_draw(looked, task_.particle_sigmas) != nullptr) {
       // Else the first of all corners that misses, which these are some of.
-      return *missed(slow, misses_ == Misses::kAll ? looked : corners_of(slow));
+      return *missed(slow, asker_ == Asker::kGuide ? looked : corners_of(slow));
     }
     Judgement judgement = at_once(slow, good_chains(looked));
     if (std::holds_alternative<JudgedPlan>(judgement)) return judgement;
-    if (misses_ == Misses::kAll) {
+    if (asker_ == Asker::kGuide) {
       if (auto again = misses_again(slow)) return *std::move(again);
     }
   }
@@ -109,9 +109,8 @@ Judgement PathJudge::at_once(const Plan& slow, std::span<const Chain> chains) {
   for (int attempt = 0; attempt < kSpeedAttempts; ++attempt) {
     Plan plan = with_slow_from(plain, distances_m);
     if (auto centred = with_last_move_centred(plan, chains, task_)) plan = *std::move(centred);
-    // Who learns from all that miss needs them soonest, a search the move that is refused.
     std::optional<Certification> certification;
-    if (misses_ == Misses::kFirst) certification = certified(plan);
+    if (asker_ == Asker::kSearch) certification = certified(plan);
     judgement = at_speeds(plan, std::move(certification), distances_m);
     if (std::holds_alternative<JudgedPlan>(judgement) || !any_fast(distances_m)) break;
   }
@@ -268,7 +267,7 @@ Certification PathJudge::certified(const Plan& plan) {
 
 std::vector<Draw> PathJudge::corners_of(const Plan& plan) {
   const auto starts = corner_starts(plan, held_, start_, pool_.front());
-  if (misses_ == Misses::kFirst) return run_to_miss(plan, starts, effort_.corners);
+  if (asker_ == Asker::kSearch) return run_to_miss(plan, starts, effort_.corners);
   const auto run_some = [&](std::span<const JudgedStart> some) {
     return run(plan, some, effort_.corners);
   };
@@ -305,7 +304,7 @@ std::optional<Refutation> PathJudge::missed(const Plan& plan, std::span<const Dr
 
 Refutation PathJudge::told(const Plan& plan, const Draw& miss) {
   Refutation refutation = refutation_of(miss, task_, start_);
-  if (misses_ == Misses::kAll) {
+  if (asker_ == Asker::kGuide) {
     for (const JudgedStart& start : missed_) refutation.others.push_back(start.particle);
   }
   std::vector<JudgedStart> levelled;

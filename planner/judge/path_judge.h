@@ -62,17 +62,22 @@ class PathJudge {
   /// @param stop asked every few hundred moves: whether to leave a path undecided
   void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
 
-  /// What of the starts at the corners a refutation tells.
-  enum class Misses : std::uint8_t {
-    kFirst,  ///< the first that misses the goal
-    kAll,    ///< those among as many again as it takes to find one, see run_past_miss()
+  /// Who learns from a refutation, and so what is looked at first.
+  enum class Asker : std::uint8_t {
+    /// Goes on by other moves: certification comes first, which says which move is at fault, and
+    /// then the first start at the corners that misses.
+    kSearch,
+    /// Is found anew from all starts that miss: the corners come first, and those are told that
+    /// miss
+    /// among as many again as it takes to find one, see run_past_miss().
+    kGuide,
   };
 
   /// @param displacements of the path's steps, values that a plan file can hold
   /// @param plain those of the steps whose touches are plain
   /// @throws InputError where they cannot be represented as a plan
   [[nodiscard]] Judgement judge(std::span<const Vector6> displacements,
-                                Misses misses = Misses::kFirst,
+                                Asker asker = Asker::kSearch,
                                 std::span<const std::size_t> plain = {});
 
   /// So far.
@@ -150,7 +155,7 @@ class PathJudge {
   ClockSeconds now_s_;
   std::function<bool()> stop_{};
   JudgeEffort effort_;
-  Misses misses_ = Misses::kFirst;
+  Asker asker_ = Asker::kSearch;
   std::vector<JudgedStart> missed_;  ///< by the path that is judged
 };
 

@@ -52,9 +52,10 @@ std::string envelope_text(const Plan& plan, const OutcomeRule& rule) {
 std::string step_cells(const ReportData& data, std::size_t index) {
   const Step& step = data.plan.steps[index];
   std::string html =
-      format("<th scope='row'><button type='button' class='jump' data-step='%zu' "
-             "aria-label='After step %zu'>%zu</button></th>",
-             index + 1, index, index) +
+      format(
+          "<th scope='row'><button type='button' class='jump' data-step='%zu' "
+          "aria-label='After step %zu'>%zu</button></th>",
+          index + 1, index, index) +
       "<td data-label='Move'>" + drawing::displacement_text(step) +
       format("</td><td class='num' data-label='Slow from'>%.0f mm</td>", 1e3 * step.slow_from_m);
   if (index + 1 >= data.nodes.size()) return html + "<td></td><td></td>";

@@ -110,7 +110,7 @@ TEST_F(PathJudgeTest, EveryCornerThatMissesIsToldBeforeAnythingElseIsAsked) {
 
   RolloutPool pool(HoledRollout(holes_m), 1);
   PathJudge judge = judge_in(pool);
-  const Judgement judgement = judge.judge(path, PathJudge::Misses::kAll);
+  const Judgement judgement = judge.judge(path, PathJudge::Asker::kGuide);
   ASSERT_TRUE(std::holds_alternative<Refutation>(judgement));
   std::vector<Vector3> told_m;
   for (const Particle& other : std::get<Refutation>(judgement).others) {
@@ -144,9 +144,9 @@ TEST_F(PathJudgeTest, ARefutationTellsWhetherItsStartWouldHaveMissedWithoutItsTi
 
 TEST_F(PathJudgeTest, WhatHoldsAtItsSpeedsIsCertifiedForThoseAlone) {
   RolloutPool pool(WallRollout(room()), 1);
-  for (const auto misses : {PathJudge::Misses::kFirst, PathJudge::Misses::kAll}) {
+  for (const auto asker : {PathJudge::Asker::kSearch, PathJudge::Asker::kGuide}) {
     PathJudge judge = judge_in(pool);
-    const Judgement judgement = judge.judge(path, misses);
+    const Judgement judgement = judge.judge(path, asker);
     ASSERT_TRUE(std::holds_alternative<JudgedPlan>(judgement));
     const auto& judged = std::get<JudgedPlan>(judgement);
     EXPECT_EQ(judged.estimate.at_goal(), kDrawsMin);
