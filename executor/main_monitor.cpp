@@ -23,6 +23,7 @@
 #include "executor/monitor/run_view.h"
 #include "executor/telemetry/telemetry.h"
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/signals.h"
 #include "shared/system/lcm_url.h"
@@ -85,17 +86,36 @@ bool listen(lcm::LCM& lcm) {
 
 struct Lines {
   static void take(const lcm::ReceiveBuffer* buffer, const std::string& channel, Lines* lines) {
-    std::fputs(lines->view.take(channel, bytes_of(*buffer)).c_str(), stdout);
+    lines->say(lines->view.take(channel, bytes_of(*buffer)));
+    lines->heard_ns = monotonic_now_ns();
+    lines->silence_told = false;
+  }
+  /// Once, where nothing more comes of what was to come.
+  void tell_silence(const std::string& url) {
+    const double silent_s = 1e-9 * static_cast<double>(monotonic_now_ns() - heard_ns);
+    if (silence_told || silent_s < kStaleAfter_s) return;
+    silence_told = true;
+    if (view.running()) {
+      say(format("stale: no cycle for %.1f s, and the run has not ended\n", silent_s));
+    } else if (!anything) {
+      say("waiting: nothing has come yet from " + url + "\n");
+    }
+  }
+  void say(const std::string& text) {
+    anything = anything || !text.empty();
+    std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
   RunView view;
+  std::int64_t heard_ns = monotonic_now_ns();
+  bool silence_told = false;
+  bool anything = false;
 };
 
 int print_lines(lcm::LCM& lcm, const std::string& url) {
   Lines lines;
   subscribe(lcm, lines);
-  while (!leave_asked && listen(lcm)) {
-  }
+  while (!leave_asked && listen(lcm)) lines.tell_silence(url);
   std::printf("\n");
   std::fflush(stdout);
   return exit_status(lines.view.malformed(), leave_asked ? "" : what_the_source_lacks(url));

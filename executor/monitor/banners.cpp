@@ -74,7 +74,7 @@ std::string live(const RunModel& model, const char* state) {
   std::string text = std::string("LIVE: ") + state;
   const int step = model.cycle->message.step;
   if (model.setup && step >= 0) {
-    text += format(", step %d of %d", step + 1, model.setup->message.step_count);
+    text += format(", step %d (%d of %d)", step, step + 1, model.setup->message.step_count);
   }
   return text;
 }

@@ -40,6 +40,7 @@ std::string RunView::shown(std::span<const std::uint8_t> bytes) {
 }
 
 std::string RunView::show(const tenon::cycle_state_t& m) {
+  running_ = true;
   const auto state = static_cast<std::uint8_t>(m.state);
   if (state == state_) return {};
   state_ = state;
@@ -55,6 +56,7 @@ std::string RunView::show(const tenon::step_event_t& m) {
 }
 
 std::string RunView::show(const tenon::run_summary_t& m) {
+  running_ = false;
   const std::string message = shortened(printable(m.message), kTextMax);
   return format("%s: %s (%d steps, %lld late cycles)\n", m.exit_code == 0 ? "done" : "failed",
                 message.c_str(), m.steps, static_cast<long long>(m.late_cycles));

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 import network
 from made_up_run import MadeUpRun
@@ -57,7 +58,7 @@ class Test:
     # --- scenes ---------------------------------------------------------------------------------
 
     def live(self, terminal):
-        self.shows(terminal, r"^LIVE: running, step 1 of 3", r"plan made_up_plan, start left",
+        self.shows(terminal, r"^LIVE: running, step 0 \(1 of 3\)", r"plan made_up_plan, start left",
                    r"cell bench, robot arm_on_rail", r"step 0 \(1 of 3\): \+x 0\.1 m", r"expects contact",
                    r"after 0\.0300 to 0\.0800 m", r"\+0\.0425 m .* of 0\.1 m", r"of at most 10 s, moving", r"holds -y",
                    r"x +\+5\.2 N .*█.* 87 %.*(!|near its trigger)", r"y +-1\.0 N .* 17 %.* -y",
@@ -203,6 +204,21 @@ class Test:
             terminal.close()
             log.unlink()
 
+    def piped(self):
+        """What waits, and what has gone silent, says so once."""
+        self.where = "piped"
+        with subprocess.Popen([self.arguments.monitor], stdout=subprocess.PIPE, text=True) as monitor:
+            time.sleep(1.5)
+            run = MadeUpRun(self.publisher)
+            run.begin()
+            run.go_on(0.5, time.sleep)
+            time.sleep(2.5)
+            monitor.send_signal(signal.SIGINT)
+            said = monitor.communicate()[0].splitlines()
+        self.check(monitor.returncode == 0, f"ends with {monitor.returncode}")
+        told = [line.split(":")[0] for line in said if line.startswith(("waiting: ", "stale: no cycle for 1."))]
+        self.check(told == ["waiting", "stale"], f"says {said}")
+
     def ended_by_a_full_disk(self):
         self.where = "full disk"
         terminal = self.open(80, 30, limit_bytes=50_000)
@@ -263,6 +279,7 @@ def main():
         test.ended_by_signals()
         test.outlives_fragments()
         test.recorded()
+        test.piped()
         test.ended_by_a_full_disk()
         test.without_colour()
         test.on_a_dumb_terminal()

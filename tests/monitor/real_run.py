@@ -85,7 +85,7 @@ class Test:
             print(f"=== {self.where}\n{run.terminal.text()}")
 
     def in_a_step(self, run):
-        return run.terminal.wait_for(rf"^LIVE: running, step [1-{STEPS}] of {STEPS}", 30.0)
+        return run.terminal.wait_for(rf"^LIVE: running, step \d+ \([1-{STEPS}] of {STEPS}\)", 30.0)
 
     def to_its_end(self, size):
         """@return false: the machine was too busy"""
