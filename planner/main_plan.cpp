@@ -21,6 +21,7 @@
 #include "planner/report/html_report.h"
 #include "planner/report/statistics.h"
 #include "planner/report/summary.h"
+#include "planner/search_moves.h"
 #include "planner/smaller_errors.h"
 #include "shared/base/error.h"
 #include "shared/base/text.h"
@@ -161,17 +162,29 @@ void write_each(const Arguments& a, planner::PlannerOptions& options,
 /// Looks at the start that is named, else at all.
 int check(const Arguments& a, Task task) {
   std::string changes;
+  std::optional<Cell> cell;
+  planner::CellAssumptions assumptions;
   if (!a.cell.empty()) {
-    planner::CellFit fit = planner::fit_to_cell(task, load_cell(a.cell));
+    planner::CellFit fit = planner::fit_to_cell(task, cell.emplace(load_cell(a.cell)));
     task = std::move(fit.task);
+    assumptions = planner::stored_assumptions(task, fit.assumptions);
     changes = planner::cell_changes_text(fit.changes);
   }
   const std::vector<Start> starts =
       a.start.empty() ? task.starts : std::vector<Start>{chosen_start(task, a.start)};
-  const planner::TaskCheck checked =
+  planner::TaskCheck checked =
       planner::check_task(task, starts, [](const Task& part) -> std::unique_ptr<Rollout> {
         return std::make_unique<sim::OdeRollout>(part);
       });
+  if (cell) {
+    const executor::CellReach reach(*cell);
+    for (const Start& start : starts) {
+      std::string why;
+      if (planner::reach_of_moves(task, start, assumptions, reach, why)) continue;
+      checked.refuse(why);
+      break;
+    }
+  }
   if (!a.report.empty()) write_file(a.report, planner::check_page(a.task, task, checked));
   std::fputs((planner::check_text(a.task, task, checked) + changes).c_str(), stdout);
   return checked.refused() ? 2 : 0;

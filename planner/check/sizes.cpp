@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "shared/base/text.h"
+#include "shared/geometry/solid.h"
+#include "shared/task/ring.h"
 
 namespace tenon::planner {
 namespace {
@@ -47,6 +49,70 @@ std::string scale_meant(const Shape& shape) {
       meant_m);
 }
 
+/// Whether a shape's middle stands in another.
+bool stands_in(const Shape& shape, const Shape& other) {
+  const Vector3 at_m = compose(inverse(other.pose), shape.pose).position_m;
+  switch (other.kind) {
+    case Shape::Kind::kBox:
+      return (at_m.cwiseAbs() - 0.5 * other.size_m).maxCoeff() < 0.0;
+    case Shape::Kind::kCylinder:
+      return at_m.head<2>().norm() < 0.5 * other.size_m.x() &&
+             std::abs(at_m.z()) < 0.5 * other.size_m.z();
+    case Shape::Kind::kSolid:
+      break;
+  }
+  // The middle of the box around a body may be outside of it.
+  return shape.kind != Shape::Kind::kSolid && other.solid->place(at_m).distance_m < 0.0;
+}
+
+/// Two of the environment that cannot both be where they are said to be.
+void find_doubled(const Task& task, std::vector<Finding>& findings) {
+  for (std::size_t i = 0; i < task.environment.size(); ++i) {
+    const Shape& one = task.environment[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      const Shape& other = task.environment[j];
+      if (piece_of(one.name) == piece_of(other.name)) continue;
+      if (!stands_in(one, other) || !stands_in(other, one)) continue;
+      findings.push_back(
+          {Finding::Weight::kDoubt,
+           format("environment[%zu] '%s' and environment[%zu] '%s' stand in each other, their "
+                  "middles %.3g mm apart: is a sign wrong in one's pose?",
+                  j, other.name.c_str(), i, one.name.c_str(),
+                  1e3 * (one.pose.position_m - other.pose.position_m).norm())});
+      return;
+    }
+  }
+}
+
+void find_other_doubts(const Task& task, std::vector<Finding>& findings) {
+  // A tool that gives way farther than any part is long holds nothing.
+  const double yields_m = task.motion.thresholds.force_on_N / task.compliance.stiffness_Npm;
+  if (yields_m > kPartMax_m) {
+    findings.push_back(
+        {Finding::Weight::kDoubt,
+         format("compliance.stiffness_Npm = %g: force_on = %g N moves the tool by %.3g m; is it in "
+                "N/mm? then write %g N/m",
+                task.compliance.stiffness_Npm, task.motion.thresholds.force_on_N, yields_m,
+                1e3 * task.compliance.stiffness_Npm)});
+  }
+  double thinnest_m = std::numeric_limits<double>::infinity();
+  for (const Shape& shape : task.held) {
+    thinnest_m = std::min(thinnest_m, shape.size_m.maxCoeff());
+  }
+  constexpr double kToleranceMin_m = 1e-5;
+  if (task.goal_tolerance_m >= thinnest_m) {
+    findings.push_back({Finding::Weight::kDoubt,
+                        format("goal.tolerance_m = %g is as much as the held part measures, %.3g "
+                               "m: it may end anywhere near the goal",
+                               task.goal_tolerance_m, thinnest_m)});
+  } else if (task.goal_tolerance_m < kToleranceMin_m) {
+    findings.push_back({Finding::Weight::kDoubt,
+                        format("goal.tolerance_m = %g is less than an arm is good for: nothing "
+                               "ends within less than some 10 um of the goal",
+                               task.goal_tolerance_m)});
+  }
+}
+
 /// From the tool frame's origin to the box around a shape, m.
 double beyond(const Shape& shape) {
   const Vector3 inside_m = compose(inverse(shape.pose), {}).position_m;
@@ -86,6 +152,8 @@ std::vector<Finding> doubtful_sizes(const Task& task) {
                 "origin is the part's tip, not in the task frame",
                 nearest_m)});
   }
+  find_doubled(task, findings);
+  find_other_doubts(task, findings);
   return findings;
 }
 

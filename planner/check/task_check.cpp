@@ -47,6 +47,7 @@ class Checker {
   void goal() {
     const auto overlap = probe_.deepest(task_.goal);
     if (overlap) {
+      check_.goal_free = false;
       if (tighter(*overlap)) return;
       add(Weight::kRefused,
           "the goal at " + at(task_.goal.position_m) +
@@ -214,6 +215,13 @@ bool TaskCheck::refused() const {
   return std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
     return finding.weight == Finding::Weight::kRefused;
   });
+}
+
+void TaskCheck::refuse(std::string text) {
+  const auto behind = std::find_if(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.weight != Finding::Weight::kRefused;
+  });
+  findings.insert(behind, {Finding::Weight::kRefused, std::move(text)});
 }
 
 TaskCheck check_task(const Task& task, const std::vector<Start>& starts, const MakeRollout& make) {

@@ -48,8 +48,11 @@ struct TaskCheck {
   std::vector<Finding> findings;  ///< in the order in which they should be looked at
   std::vector<StartCheck> starts;
   std::vector<GoalRoom> goal_room;
+  bool goal_free = true;
 
   [[nodiscard]] bool refused() const;
+  /// Adds what else planning would refuse, behind what is refused already.
+  void refuse(std::string text);
 };
 
 /// @param starts of the task, each looked at

@@ -61,20 +61,23 @@ std::vector<Vector3> places_of(const Start& start, const StartCheck& checked) {
   return places_m;
 }
 
-std::string picture(const Task& task, const Start& start, const StartCheck& checked,
+constexpr const char* kInSomething = "fill='#a63d00' fill-opacity='.35' stroke='#a63d00'";
+
+std::string picture(const Task& task, const Start& start, const StartCheck& checked, bool goal_free,
                     const drawing::View& view) {
   const Canvas canvas(view, task, places_of(start, checked));
   std::string svg = canvas.open("Start " + drawing::escaped(start.name) + ", " + view.title) +
                     surroundings(task, canvas, view);
   for (const CheckedParticle& particle : checked.particles) {
-    svg += part_at(task, canvas, particle.tool,
-                   particle.free ? "fill='#d08a00' fill-opacity='.06' stroke='#d08a00'"
-                                 : "fill='#a63d00' fill-opacity='.35' stroke='#a63d00'");
+    svg += part_at(
+        task, canvas, particle.tool,
+        particle.free ? "fill='#d08a00' fill-opacity='.06' stroke='#d08a00'" : kInSomething);
   }
-  svg += part_at(task, canvas, start.pose,
-                 checked.free ? "fill='#0072b2' fill-opacity='.12' stroke='#0072b2'"
-                              : "fill='#a63d00' fill-opacity='.35' stroke='#a63d00'");
-  svg += part_at_goal(task, canvas, task.goal);
+  svg +=
+      part_at(task, canvas, start.pose,
+              checked.free ? "fill='#0072b2' fill-opacity='.12' stroke='#0072b2'" : kInSomething);
+  svg += goal_free ? part_at_goal(task, canvas, task.goal)
+                   : part_at(task, canvas, task.goal, kInSomething);
   for (const Touch& touch : checked.touches) {
     if (!touch.in_legs || touch.axis == view.along) continue;
     svg += part_at(task, canvas, touch.tool, "fill='none' stroke='#d55e00' stroke-dasharray='8 5'");
@@ -101,7 +104,7 @@ std::string touch_rows(const Task& task, const Start& start, const StartCheck& c
   return rows;
 }
 
-std::string start_section(const Task& task, const StartCheck& checked) {
+std::string start_section(const Task& task, const StartCheck& checked, bool goal_free) {
   const Start* start = find_start(task, checked.name);
   if (start == nullptr) return {};
   std::string html = "<section class='picture'><h2>Start " + drawing::escaped(start->name) +
@@ -109,7 +112,7 @@ std::string start_section(const Task& task, const StartCheck& checked) {
                      reach_text(task) + ": " + drawing::escaped(spread_text(*start, task)) +
                      ".</p>\n";
   for (const drawing::View& view : drawing::views_of(task.coordinates)) {
-    html += picture(task, *start, checked, view);
+    html += picture(task, *start, checked, goal_free, view);
   }
   const std::string rows = touch_rows(task, *start, checked);
   if (!rows.empty()) html += titled_table({"Push along", "touches", "with the tool at (mm)"}, rows);
@@ -154,7 +157,8 @@ std::string check_page(const std::string& file, const Task& task, const TaskChec
       "the goal; red: where it stands in something. Orange and dashed: where pushes touch, "
       "wherever "
       "in its spread the part begins.</p></section>\n";
-  for (const StartCheck& start : check.starts) page.body += start_section(task, start);
+  for (const StartCheck& start : check.starts)
+    page.body += start_section(task, start, check.goal_free);
   page.body += understood(task, check);
   return drawing::still_document(page);
 }

@@ -201,8 +201,9 @@ void read_physics(const Value& value, Task& task) {
 }
 
 /// Every move may run at contact speed throughout. @param primitives null: its steps are as long as
-/// the starts' errors ask for, and errors that are so large are often in another unit
-void check_time_for_a_step(const Value* primitives, const Value& starts, const Task& task) {
+/// the starts' errors ask for, and errors larger than the part are often in another unit
+void check_time_for_a_step(const Value* primitives, const Value& starts, const Value& speeds_of,
+                           const Task& task) {
   const SpeedLimits& speeds = task.motion.speeds;
   double step_s = 0.0;
   for (int axis = 0; axis < 6; ++axis) {
@@ -221,6 +222,11 @@ void check_time_for_a_step(const Value* primitives, const Value& starts, const T
         task.particle_sigmas * (turns ? sigma.tail<3>() : sigma.head<3>()).maxCoeff();
     double part_m = 0.0;
     for (const Shape& shape : task.held) part_m = std::max(part_m, shape.size_m.maxCoeff());
+    if (!turns && error < part_m) {
+      speeds_of.refuse(
+          format("contact_mps = %g: a step of %.3g m takes ", speeds.contact_mps, task.step_m) +
+          times + ": more speed, or a longer contact.timeout_s");
+    }
     starts.refuse(
         format("errors up to %g %s, of a part that measures %g m, ask for moves that take ", error,
                turns ? "rad" : "m", part_m) +
@@ -278,7 +284,8 @@ Task load_task(const std::filesystem::path& name) {
   read_compliance(map.at("compliance"), task);
   read_contact(map.at("contact"), task);
   if (const auto search = map.find("search")) read_search(*search, task);
-  check_time_for_a_step(primitives ? &*primitives : nullptr, map.at("starts"), task);
+  check_time_for_a_step(primitives ? &*primitives : nullptr, map.at("starts"), map.at("speeds"),
+                        task);
   return task;
 }
 

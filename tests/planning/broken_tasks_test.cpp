@@ -39,6 +39,9 @@ std::vector<std::string> check_command(const ScratchFolder& folder, const YAML::
     command.push_back(folder.put(
         "task.yaml", whole ? broken["text"].as<std::string>() : changed(task, broken["change"])));
   }
+  if (broken["cell"]) {
+    command.insert(command.end(), {"--cell", in_tree(broken["cell"].as<std::string>())});
+  }
   for (const YAML::Node& option : broken["options"]) command.push_back(option.as<std::string>());
   return command;
 }
