@@ -3,6 +3,7 @@
 // an exit status: 0 success, 1 failure, 2 bad usage or bad input.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -42,6 +43,9 @@ inline std::string argument_meant(const CLI::App& app, const std::string& word) 
   if (word.ends_with(".tnp") && app.get_option_no_throw("--plan") != nullptr) {
     return ": a plan goes with --plan; see --help";
   }
+  if (word.ends_with(".lcmlog") && app.get_option_no_throw("--lcm-url") != nullptr) {
+    return ": a log is played by --lcm-url file://" + word + "; see --help";
+  }
   return {};
 }
 
@@ -56,7 +60,11 @@ inline std::string usage_error(const CLI::App& app, const CLI::ParseError& error
       if (!meant.empty()) return word + meant;
       continue;
     }
-    const std::string meant = did_you_mean(word.substr(0, word.find('=')), known);
+    const std::string name = word.substr(0, word.find('='));
+    if (std::find(known.begin(), known.end(), name) != known.end()) {
+      return name + ": is an option, but not here: of a subcommand, or of none; see --help";
+    }
+    const std::string meant = did_you_mean(name, known);
     if (meant.empty()) continue;
     std::string line = word;
     return line.append(": is an unknown option").append(meant).append(" See --help");

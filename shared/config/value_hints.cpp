@@ -58,8 +58,12 @@ std::string writing_hint(std::string_view text) {
   if (comma != std::string::npos && number_length(point) == point.size()) {
     return "; write a decimal point: " + point;
   }
+  for (const std::string_view dash : {"\u2212", "\u2013", "\u2010", "\u2011"}) {
+    if (text.starts_with(dash)) return "; its minus is another character: write -";
+  }
   const std::size_t length = number_length(text);
   if (length == 0) return {};
+  if (text.find('/') != std::string_view::npos) return "; write the quotient as a number";
   if (length == text.size()) return "; leave the quotes out";
   const std::size_t rest = text.find_first_not_of(' ', length);
   if (rest != std::string_view::npos && std::isalpha(static_cast<unsigned char>(text[rest])) != 0) {

@@ -44,7 +44,9 @@ template <typename Number, typename... Base>
 std::optional<Number> parsed(const std::string& text, Base... base) {
   Number number{};
   const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number, base...);
+  // A sign that YAML allows and from_chars does not.
+  const char* begin = text.data() + (text.starts_with('+') && !text.starts_with("+-") ? 1 : 0);
+  const auto [rest, error] = std::from_chars(begin, end, number, base...);
   if (error != std::errc{} || rest != end) return std::nullopt;
   return number;
 }

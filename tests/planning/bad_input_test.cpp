@@ -259,6 +259,8 @@ TEST(BadInput, WhatIsGivenInAnothersPlaceIsToldWhereItGoes) {
        {"gantry3: cannot be read", "did you mean gantry3.yaml?"}},
       {{exec, "--cell", cell, "run.tnp"}, {"run.tnp", "a plan goes with --plan"}},
       {{executable("tenon-monitor"), "exprt", log}, {"exprt", "did you mean export?"}},
+      {{executable("tenon-monitor"), "run.lcmlog"}, {"--lcm-url file://run.lcmlog"}},
+      {{executable("tenon-monitor"), "export", "--lcm-url", "x"}, {"--lcm-url", "not here"}},
       {{executable("tenon-can"), "--can", kNobody, "scna"}, {"scna", "did you mean scan?"}},
   };
   for (const BadInput& bad : table) expect_refused(folder, bad);

@@ -204,6 +204,13 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
        ":10: goal.tolerance_m = two, must be a number in (0, 1]"},
       {"tolerance_m: 0.002", "tolerance_m: \"0.002\"",
        ":10: goal.tolerance_m = 0.002, must be a number in (0, 1]; leave the quotes out"},
+      {"tolerance_m: 0.002", "tolerance_m: 3/1000",
+       ":10: goal.tolerance_m = 3/1000, must be a number in (0, 1]; write the quotient as a "
+       "number"},
+      {"tolerance_m: 0.002", "tolerance_m: +-0.002",
+       ":10: goal.tolerance_m = +-0.002, must be a number in (0, 1]"},
+      {"tolerance_m: 0.002", "tolerance_m: +2",
+       ":10: goal.tolerance_m = +2, must be in (0, 1]; is it in mm? then write 0.002 m"},
       {"tolerance_m: 0.002",
        "tolerance_m:", ":10: goal.tolerance_m is empty, must be a number in (0, 1]"},
       {"pose: {position_m: [0.2, 0, 0]}, ", "", ":10: goal: the required key pose is missing"},
