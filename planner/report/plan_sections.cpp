@@ -78,7 +78,7 @@ std::string table(const ReportData& data) {
       html += format("<tr data-step='%zu'>", i + 1) +
               (first ? step_cells(data, i) : "<td></td><td></td><td></td><td></td><td></td>") +
               format("<td data-label='Outcome'>%s</td>", to_string(outcome)) +
-              "<td data-label='Expected'>" + envelope_text(plan, rule) +
+              "<td data-label='Travel (mm, deg)'>" + envelope_text(plan, rule) +
               "</td><td data-label='Next'>" +
               (rule.successor == kSuccessorDone ? std::string("done")
                                                 : std::to_string(rule.successor)) +

@@ -111,7 +111,7 @@ std::string step_row(const Plan& plan, const RecordedStep& step, std::size_t num
          "</td><td data-label='Outcome'" + (good ? "" : " class='stopped'") + ">" +
          to_string(step.outcome) + " <span class='term'>(" + expected_outcomes(planned) +
          ")</span>" + (good ? "" : "<br>" + escaped(step.deviation)) +
-         "</td><td data-label='Travelled'>" + travel(plan, step) +
+         "</td><td data-label='Travelled (mm, deg)'>" + travel(plan, step) +
          "</td><td data-label='Contacts'>" + escaped(step.signature) +
          format(
              "</td><td class='num' data-label='Force'>%.1f N</td>"

@@ -90,6 +90,7 @@ std::string stairs(const SearchStory& story, const std::vector<double>& values, 
     if (!points.empty()) points.emplace_back(x, points.back().y());
     points.emplace_back(x, kHeight * (1.0 - values[i] / most));
   }
+  if (points.size() == 1) points.push_back(points.front());  // a dot, by the line's round end
   return format("<polyline class='%s' points='", name) + drawing::points_text(points, 1) + "'/>";
 }
 
@@ -107,12 +108,15 @@ std::string course(const SearchStory& story) {
       "any "
       "path costs at least %.0f.",
       first, story.expansions.back(), story.costs.back(), story.lower_bounds.back());
-  return "<figure class='course'><svg role='img' aria-label='" + words +
+  return "<figure class='course'>" + format("<p class='scale'>cost %.0f</p>", most) +
+         "<svg role='img' aria-label='" + words +
          "' viewBox='0 -4 1000 108' preserveAspectRatio='none'>" +
          stairs(story, story.lower_bounds, most, "least") +
          stairs(story, story.costs, most, "cost") +
-         format("<path d='M0 %.1fH1000'/>", 100.0 * (1.0 - story.costs.back() / most)) +
-         "</svg><figcaption><span class='key'><i class='cost'></i>cost of the best path; thin: of "
+         format("<path d='M0 %.1fH1000'/>", 100.0 * (1.0 - story.costs.back() / most)) + "</svg>" +
+         format("<p class='scale'><span>0</span><span>%zu expansions</span></p>",
+                story.expansions.back()) +
+         "<figcaption><span class='key'><i class='cost'></i>cost of the best path; thin: of "
          "the last</span> "
          "<span class='key'><i class='least'></i>proven: no path costs less</span> " +
          words + "</figcaption></figure>\n";
