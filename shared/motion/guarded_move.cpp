@@ -159,10 +159,13 @@ void GuardedMove::plan_path(std::int64_t time_ns, double from) {
   profile_from_ = from;
 }
 
+bool GuardedMove::turns_only() const {
+  return displacement_.tail<3>().any() && displacement_.head<3>().norm() <= kNoTravel;
+}
+
 double GuardedMove::path_at(const Pose& pose) const {
   const Vector6 off = displacement_between(rest_, pose);
-  const bool turn_only = displacement_.head<3>().norm() <= kNoTravel;
-  return turn_only ? along_.tail<3>().dot(off.tail<3>()) : along_.head<3>().dot(off.head<3>());
+  return turns_only() ? along_.tail<3>().dot(off.tail<3>()) : along_.head<3>().dot(off.head<3>());
 }
 
 void GuardedMove::move(const Input& input) {
@@ -259,7 +262,9 @@ void GuardedMove::enter_settling(const Input& input, Outcome outcome) {
 
 Pose GuardedMove::resting(const Pose& pose, ContactSignature signature) const {
   Pose rest = rest_setpoint(pose, signature, parameters_);
-  const bool turning = displacement_.tail<3>().any() && outcome_ != Outcome::kReached;
+  // A move that only turns may be stopped by a force; one that also travels is stopped on its way,
+  // as if it did not turn.
+  const bool turning = turns_only() && outcome_ != Outcome::kReached;
   const bool turned = signature.bits >> 2 * kTranslations != 0;
   if (rotates_ && !turning && !turned) rest.orientation = setpoint_.pose.orientation;
   const bool free = signature.bits == 0 && outcome_ == Outcome::kReached;

@@ -119,6 +119,7 @@ class GuardedMove {
   void finish(const Input& input);
   /// @param limited out: bit a: the spring's pull is at its limit on axis a
   [[nodiscard]] Pose clamped(const Pose& setpoint, const Pose& pose, std::uint8_t& limited) const;
+  [[nodiscard]] bool turns_only() const;
   void watch_resistance(const Vector6& wrench);
   void ease(const Pose& pose, std::uint8_t axes);
   [[nodiscard]] ContactSignature watched(ContactSignature bits) const;

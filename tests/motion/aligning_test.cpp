@@ -278,6 +278,49 @@ TEST(Aligning, AToolInFreeAirIsNotTurnedOnFromMoveToMove) {
   EXPECT_GT(turn_of(moved_after(20, torque, false)), 5.0 * kGive_rad);
 }
 
+/// How far a tool is turned that goes to a wall and back, turning a little each time, while its
+/// sensor is off by a torque.
+double turned_by_touches(int touches, double turn_rad, double torque_Nm) {
+  constexpr double kWall_m = 0.01;
+  constexpr double kWall_Npm = 2e4;
+  MoveParameters move;
+  move.compliance.stiffness_Nmpr = 5.0;
+  move.compliance.damping_Nmspr = 1.0;
+  move.sensed_axes = 0b000111;
+  move.aligns = false;
+  Admittance tool(move.compliance);
+  GuardedMove::Input input;
+  std::optional<Pose> held;
+  ContactSignature signature;
+  for (int i = 0; i < 2 * touches; ++i) {
+    const bool back = i % 2 != 0;
+    move.displacement << (back ? -0.01 : 0.02), 0.0, 0.0, 0.0, 0.0, (back ? -turn_rad : turn_rad);
+    GuardedMove guarded(move, signature, held);
+    Setpoint setpoint;
+    for (; !guarded.result(); input.time_ns += 1000 * kStep_us) {
+      input.pose = tool.state().pose;
+      const double press_N = kWall_Npm * std::max(0.0, input.pose.position_m.x() - kWall_m);
+      input.wrench << -press_N, 0.0, 0.0, 0.0, 0.0, torque_Nm;
+      setpoint = guarded.update(input).setpoint;
+      tool.update(setpoint, input.wrench, 1e-6 * kStep_us);
+    }
+    EXPECT_EQ(guarded.result()->outcome, back ? Outcome::kReached : Outcome::kContact);
+    held = setpoint.pose;
+    signature = guarded.signature();
+  }
+  return turn_of(tool.state().pose);
+}
+
+// What stops it on its way has not turned it.
+TEST(Aligning, NorWhereItMeetsAWallOnItsWayOfAMoveThatTurnsToo) {
+  constexpr double kTorque_Nm = 0.005;
+  constexpr double kGive_rad = kTorque_Nm / 5.0;
+  constexpr double kTurn_rad = 1e-4;
+  for (const double turn_rad : {0.0, kTurn_rad, -kTurn_rad}) {
+    EXPECT_NEAR(turned_by_touches(10, turn_rad, kTorque_Nm), kGive_rad, kGive_rad) << turn_rad;
+  }
+}
+
 TEST(Aligning, NorIsItShiftedOnByAForceThatCountsForNone) {
   const double give_m = 0.5 / Compliance{}.stiffness_Npm;
   const auto shifted_m = [](double force_N, int moves, bool hand_on) {
