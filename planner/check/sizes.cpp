@@ -26,7 +26,8 @@ std::string key_of(const char* list, const Shape& shape, std::size_t index) {
 }
 
 /// In which units the numbers would make a part.
-std::string units_meant(double largest_m) {
+std::string units_meant(const Shape& shape) {
+  const double largest_m = shape.size_m.maxCoeff();
   std::string text;
   const auto would_be = [&](const char* unit, double factor) {
     const double meant_m = largest_m / factor;
@@ -36,7 +37,11 @@ std::string units_meant(double largest_m) {
   would_be("mm", 1e3);
   would_be("cm", 1e2);
   would_be("inches", 1.0 / 0.0254);
-  return text.empty() ? "" : ": did you mean " + text + "? sizes are in m";
+  if (text.empty()) return "";
+  text = ": did you mean " + text + "? ";
+  return text + (shape.kind == Shape::Kind::kSolid
+                     ? "a mesh's scale is 0.001 where its file is in mm, 1 where it is in m"
+                     : "sizes are in m");
 }
 
 /// Of a part that is too small: what made metres of its file.
@@ -84,27 +89,61 @@ void find_doubled(const Task& task, std::vector<Finding>& findings) {
   }
 }
 
-void find_other_doubts(const Task& task, std::vector<Finding>& findings) {
+/// How far the tool gives way to the force that is a contact, and presses on until it knows of it.
+void find_doubtful_stiffness(const Task& task, std::vector<Finding>& findings) {
+  const double stiffness_Npm = task.compliance.stiffness_Npm;
   // A tool that gives way farther than any part is long holds nothing.
-  const double yields_m = task.motion.thresholds.force_on_N / task.compliance.stiffness_Npm;
+  const double yields_m = task.motion.thresholds.force_on_N / stiffness_Npm;
   if (yields_m > kPartMax_m) {
     findings.push_back(
         {Finding::Weight::kDoubt,
          format("compliance.stiffness_Npm = %g: force_on = %g N moves the tool by %.3g m; is it in "
                 "N/mm? then write %g N/m",
-                task.compliance.stiffness_Npm, task.motion.thresholds.force_on_N, yields_m,
-                1e3 * task.compliance.stiffness_Npm)});
+                stiffness_Npm, task.motion.thresholds.force_on_N, yields_m, 1e3 * stiffness_Npm)});
   }
-  double thinnest_m = std::numeric_limits<double>::infinity();
-  for (const Shape& shape : task.held) {
-    thinnest_m = std::min(thinnest_m, shape.size_m.maxCoeff());
+  const double debounce_s = 1e-6 * task.motion.thresholds.debounce_us;
+  const double on_m = task.motion.speeds.contact_mps * debounce_s;
+  if (stiffness_Npm * on_m > task.force_limit_N) {
+    findings.push_back(
+        {Finding::Weight::kDoubt,
+         format(
+             "compliance.stiffness_Npm = %g: before it knows of a contact the tool runs on by "
+             "%.3g mm (contact_mps times debounce_s), which presses with %.3g N, the limit is %g "
+             "N: a softer tool, or a slower one",
+             stiffness_Npm, 1e3 * on_m, stiffness_Npm * on_m, task.force_limit_N)});
   }
+}
+
+void find_doubtful_goal(const Task& task, std::vector<Finding>& findings) {
+  const double certain_m = std::sqrt(task.goal_uncertainty_m2);
+  constexpr double kCertainMin_m = 1e-5;
+  if (task.goal_uncertainty_m2 > 0.0 && certain_m < kCertainMin_m) {
+    findings.push_back(
+        {Finding::Weight::kDoubt,
+         format("goal.uncertainty_m2 = %g asks for a place that is certain to %.2g mm, which no "
+                "arm is good for: it is a variance in m^2, and may be left out",
+                task.goal_uncertainty_m2, 1e3 * certain_m)});
+  }
+}
+
+void find_other_doubts(const Task& task, std::vector<Finding>& findings) {
+  constexpr double kForceOnMin_N = 0.2;
+  if (task.motion.thresholds.force_on_N < kForceOnMin_N) {
+    findings.push_back(
+        {Finding::Weight::kDoubt,
+         format(
+             "contact.force_on_N = %g is within the noise of most force sensors: a plan takes it "
+             "for a contact wherever it comes; write some newtons, in N",
+             task.motion.thresholds.force_on_N)});
+  }
+  double longest_m = 0.0;
+  for (const Shape& shape : task.held) longest_m = std::max(longest_m, shape.size_m.maxCoeff());
   constexpr double kToleranceMin_m = 1e-5;
-  if (task.goal_tolerance_m >= thinnest_m) {
+  if (task.goal_tolerance_m >= longest_m) {
     findings.push_back({Finding::Weight::kDoubt,
-                        format("goal.tolerance_m = %g is as much as the held part measures, %.3g "
-                               "m: it may end anywhere near the goal",
-                               task.goal_tolerance_m, thinnest_m)});
+                        format("goal.tolerance_m = %g is as much as the longest held shape "
+                               "measures, %.3g m: it may end anywhere near the goal",
+                               task.goal_tolerance_m, longest_m)});
   } else if (task.goal_tolerance_m < kToleranceMin_m) {
     findings.push_back({Finding::Weight::kDoubt,
                         format("goal.tolerance_m = %g is less than an arm is good for: nothing "
@@ -128,7 +167,7 @@ std::vector<Finding> doubtful_sizes(const Task& task) {
         {Finding::Weight::kDoubt, key_of(list, shape, i) +
                                       format(" measures %g x %g x %g m, %s", shape.size_m.x(),
                                              shape.size_m.y(), shape.size_m.z(), why) +
-                                      units_meant(shape.size_m.maxCoeff()) + scale_meant(shape)});
+                                      units_meant(shape) + scale_meant(shape)});
   };
   double nearest_m = std::numeric_limits<double>::infinity();
   double largest_m = 0.0;
@@ -153,7 +192,9 @@ std::vector<Finding> doubtful_sizes(const Task& task) {
                 nearest_m)});
   }
   find_doubled(task, findings);
+  find_doubtful_stiffness(task, findings);
   find_other_doubts(task, findings);
+  find_doubtful_goal(task, findings);
   return findings;
 }
 

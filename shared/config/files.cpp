@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -39,6 +40,12 @@ std::string shipped_meant(const std::filesystem::path& file) {
   return "";
 }
 
+std::string in_small_letters(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
 /// A file beside the one that is not there; nothing where none has a name like its.
 std::string file_meant(const std::filesystem::path& file) {
   constexpr int kFilesMax = 1000;
@@ -52,9 +59,15 @@ std::string file_meant(const std::filesystem::path& file) {
     if (names.size() >= kFilesMax) break;
   }
   std::sort(names.begin(), names.end());
+  const std::string written = in_small_letters(file.filename().string());
+  // What people write goes before what programs have made of it.
+  std::stable_partition(names.begin(), names.end(), [](const std::string& name) {
+    return std::filesystem::path(name).extension() == ".yaml";
+  });
   for (const std::string& name : names) {
-    const bool lacks_its_end = std::filesystem::path(name).stem() == file.filename();
-    if (lacks_its_end) return "; did you mean " + name + "?";
+    const std::string small = in_small_letters(name);
+    const bool lacks_its_end = std::filesystem::path(small).stem() == written;
+    if (small == written || lacks_its_end) return "; did you mean " + name + "?";
   }
   const std::vector<std::string_view> known(names.begin(), names.end());
   return did_you_mean(file.filename().string(), known);

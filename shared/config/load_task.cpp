@@ -62,6 +62,9 @@ GoalAxes read_goal_axes(const Map& goal, CoordinateMask coordinates) {
 }
 
 void read_goal(const Value& value, Task& task) {
+  if (const auto angle = value.peek("tolerance_rad")) {
+    angle->refuse("is no key here: angles have tolerances by axis, tolerances: {rz_rad: 0.02}");
+  }
   const Map map(value, {"pose", "tolerance_m", "tolerances", "free", "uncertainty_m2", "inserted"});
   task.goal = map.at("pose").pose();
   task.goal_tolerance_m = map.number("tolerance_m", positive_to(1.0));

@@ -6,7 +6,9 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "shared/base/did_you_mean.h"
 #include "shared/base/text.h"
 
 namespace tenon::config {
@@ -41,6 +43,16 @@ constexpr std::array<Unit, 10> kUnits = {
      {"_Nm", "Nm", "Nmm", 1e3},
      {"_radps", "rad/s", "degrees/s", 180.0 / std::numbers::pi},
      {"_rad", "rad", "degrees", 180.0 / std::numbers::pi}}};
+
+// What other formats call it, and what people say.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kOtherWords = {
+    {{"filename", "file"},
+     {"path", "file"},
+     {"height_m", "length_m"},
+     {"height", "length_m"},
+     {"xyz", "position_m"},
+     {"translation", "position_m"},
+     {"rpy", "rotation_rad"}}};
 
 const Unit* unit_of(std::string_view path) {
   while (path.ends_with(']')) path = path.substr(0, path.rfind('['));
@@ -86,27 +98,85 @@ std::string unit_hint(std::string_view path, double number, const Bounds& bounds
          std::string(unit->name);
 }
 
-std::string key_hint(std::string_view key) {
+std::string key_hint(std::string_view key, std::span<const std::string_view> known) {
   const bool digits = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
     return std::isdigit(c) != 0;
   });
   if (digits) return "; a decimal comma ends a number here: write a decimal point";
-  const bool radius = key.find("radius") != std::string_view::npos;
-  return radius ? "; a round shape's size is its diameter, twice the radius" : "";
+  if (key.find("radius") != std::string_view::npos) {
+    return "; a round shape's size is its diameter, twice the radius";
+  }
+  const auto is_known = [&](std::string_view word) {
+    return std::find(known.begin(), known.end(), word) != known.end();
+  };
+  if (is_known("pose") && (key == "position_m" || key == "rotation_rad" || key == "position")) {
+    return "; it stands in the pose: pose: {position_m: [0.1, 0, 0]}";
+  }
+  for (const auto& [word, meant] : kOtherWords) {
+    if (key == word && is_known(meant)) return "; did you mean " + std::string(meant) + "?";
+  }
+  return did_you_mean(key, known);
 }
 
-std::string tab_hint(std::string_view text, int line) {
-  std::size_t at = 0;
-  for (int i = 0; at < text.size() && i <= line; ++i) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view row = text.substr(at, end - at);
-    const std::string_view margin = row.substr(0, row.find_first_not_of(" \t"));
-    if (i + 1 >= line && margin.find('\t') != std::string_view::npos) {
-      return format("; line %d begins with a tab: indent with spaces", i + 1);
-    }
-    at = end + 1;
+std::string list_hint(std::size_t given, std::size_t wanted) {
+  return wanted > 1 && given == 2 * wanted
+             ? "; a decimal comma makes two of one number: write decimal points"
+             : "";
+}
+
+namespace {
+
+/// From 0; empty beyond the last.
+std::string_view row_of(std::string_view text, int line) {
+  for (int i = 0; i < line; ++i) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
   }
-  return {};
+  return text.substr(0, text.find('\n'));
+}
+
+struct Forgotten {
+  std::string_view said;  ///< by yaml-cpp
+  std::string_view hint;
+};
+
+constexpr std::array<Forgotten, 5> kForgotten = {
+    {{"end of map flow",
+      "; here or above, a {...} is not closed, or has no comma between two of its keys"},
+     {"end of sequence flow",
+      "; here or above, a [...] is not closed, or has no comma between two of its entries"},
+     {"end of map",
+      "; here or above, a key is indented unlike its neighbours, a dash is missing before it, or a "
+      "bracket is too many"},
+     {"end of sequence",
+      "; here or above, an entry of a list is indented unlike the others, or its dash is missing"},
+     {"illegal map value",
+      "; here or above, an indent differs, a comment lacks its #, or a key has = for its colon"}}};
+
+}  // namespace
+
+std::string yaml_hint(std::string_view text, int line, std::string_view said) {
+  for (const int at : {line - 1, line}) {
+    if (at < 0) continue;
+    const std::string_view row = row_of(text, at);
+    const std::string_view margin = row.substr(0, row.find_first_not_of(" \t"));
+    if (margin.find('\t') != std::string_view::npos) {
+      return format("; line %d begins with a tab: indent with spaces", at + 1);
+    }
+    if (row.find("\u00a0") != std::string_view::npos) {
+      return format("; line %d has a no-break space: write plain spaces", at + 1);
+    }
+  }
+  const auto* found = std::find_if(kForgotten.begin(), kForgotten.end(), [&](const Forgotten& one) {
+    return said.starts_with(one.said);
+  });
+  return found == kForgotten.end() ? "" : std::string(found->hint);
+}
+
+int last_line(std::string_view text) {
+  text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
 }
 
 }  // namespace tenon::config

@@ -71,15 +71,16 @@ Value Value::parse(const std::filesystem::path& file, const std::string& text) {
     }
     return {name, "", YAML::Load(text)};
   } catch (const YAML::Exception& error) {
-    throw InputError(*name + ":" + std::to_string(error.mark.line + 1) +
-                     ": is not YAML: " + error.msg + tab_hint(text, error.mark.line));
+    const int line = std::min(error.mark.line, last_line(text));
+    throw InputError(*name + ":" + std::to_string(line + 1) + ": is not YAML: " + error.msg +
+                     yaml_hint(text, line, error.msg));
   }
 }
 
 std::string Value::place() const {
-  // A node that the file does not spell out (an empty value) has no line of its own.
-  const std::string line =
-      node_.Mark().is_null() ? "" : ":" + std::to_string(node_.Mark().line + 1);
+  // An empty value has the line of what comes next; one that the file does not spell out has none.
+  const int at = key_line_ && node_.IsNull() ? *key_line_ : node_.Mark().line;
+  const std::string line = node_.Mark().is_null() ? "" : ":" + std::to_string(at + 1);
   return *file_ + line + ": " + path_;
 }
 
@@ -90,8 +91,9 @@ void Value::refuse(const std::string& what) const {
 void Value::refuse_value(const std::string& must_be) const {
   const bool whole = path_.empty() && node_.IsScalar();
   const std::string value = whole ? "is text (" + shortened(node_.Scalar(), kShownMax) + ")"
-                            : node_.IsScalar() ? " = " + shortened(node_.Scalar(), kShownMax)
-                                               : " is " + std::string(kind_of(node_));
+                            : node_.IsScalar()
+                                ? " = " + shortened(node_.Scalar(), kShownMax)
+                                : (path_.empty() ? "is " : " is ") + std::string(kind_of(node_));
   throw InputError(place() + value + ", must be " + must_be);
 }
 
@@ -153,7 +155,8 @@ std::vector<Value> Value::list(std::size_t at_least, std::size_t at_most) const 
                                 : std::to_string(at_least) + " to " + std::to_string(at_most);
   if (!node_.IsSequence()) refuse_value("a list of " + count);
   if (node_.size() < at_least || node_.size() > at_most) {
-    refuse("has " + std::to_string(node_.size()) + " entries, must have " + count);
+    refuse("has " + std::to_string(node_.size()) + (node_.size() == 1 ? " entry" : " entries") +
+           ", must have " + count + (at_least == at_most ? list_hint(node_.size(), at_least) : ""));
   }
   std::vector<Value> values;
   values.reserve(node_.size());
@@ -218,7 +221,9 @@ std::vector<Value::Entry> Value::entries() const {
     const Value key_value(file_, path, pair.first);
     if (!given.insert(key).second) key_value.refuse("is given twice");
     // An empty value is refused by whoever reads it, at the line of its key.
-    own.push_back({key, key_value, {file_, path, pair.second}});
+    Value value(file_, path, pair.second);
+    value.key_line_ = pair.first.Mark().line;
+    own.push_back({key, key_value, std::move(value)});
   }
   if (over_ == nullptr) return own;
   // Built anew: assigning to a YAML::Node would change the file's node, aliases of it included.
@@ -262,7 +267,7 @@ Map::Map(const Value& value, std::initializer_list<std::string_view> keys) : val
     if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
     const std::span<const std::string_view> known(keys.begin(), keys.size());
     entry.key_value.refuse("is an unknown key, known here: " + joined(keys) +
-                           did_you_mean(entry.key, known) + key_hint(entry.key));
+                           key_hint(entry.key, known));
   }
 }
 

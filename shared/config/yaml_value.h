@@ -94,6 +94,7 @@ class Value {
   std::shared_ptr<const std::string> file_;
   std::string path_;
   YAML::Node node_;
+  std::optional<int> key_line_;        ///< from 0, of a value that has a key
   std::shared_ptr<const Value> over_;  ///< a mapping laid over this mapping or list
 };
 

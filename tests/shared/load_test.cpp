@@ -239,7 +239,9 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
       {"rollout_step_s: 0.002", "rollout_step_s: 0.006",
        ":25: physics.rollout_step_s = 0.006, must be in [0.0001, 0.005]"},
       {"coordinates: [x, rz]", "coordinates: [x, rz",
-       ":3: is not YAML: end of sequence flow not found"},
+       ":3: is not YAML: end of sequence flow not found; here or above, a [...] is not closed, or "
+       "has "
+       "no comma between two of its entries"},
       {"physics:\n", "---\n", ": must hold one YAML document, holds 2 or more"},
   };
   expect_refusals(kTinyTask, lines,
