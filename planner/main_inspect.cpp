@@ -54,7 +54,7 @@ void describe(CLI::App& app, Arguments& a) {
       "Exit status:\n"
       "  0  shown, and what was asked for is written; --recertify: the plan is what it says\n"
       "  1  --recertify: it is not; or a file could not be written\n"
-      "  2  bad input\n\n"
+      "  2  bad input, or a place that nothing can be written to\n\n"
       "Examples:\n"
       "  tenon-inspect plan.tnp --recertify planner/tasks/box_on_table_2d.yaml\n"
       "  tenon-inspect plan.tnp --task planner/tasks/box_on_table_2d.yaml --report plan.html\n"

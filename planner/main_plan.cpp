@@ -86,7 +86,7 @@ void describe(CLI::App& app, Arguments& a) {
       "Exit status:\n"
       "  0  a plan is written; --check: nothing is wrong; --new-task: a task is written\n"
       "  1  there is no plan, and the last line says why; or a file could not be written\n"
-      "  2  bad input; --check: something is wrong\n\n"
+      "  2  bad input, or a place that nothing can be written to; --check: something is wrong\n\n"
       "Examples:\n"
       "  tenon-plan --check planner/tasks/box_on_table_2d.yaml\n"
       "  tenon-plan planner/tasks/box_on_table_2d.yaml --start 1 -o plan.tnp");

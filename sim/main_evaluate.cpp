@@ -198,7 +198,7 @@ int parse_and_evaluate(int argc, char** argv) {
       "Exit status:\n"
       "  0  all runs were made, however they ended\n"
       "  1  fewer than --min-success succeeded, or not all of what was asked for could be written\n"
-      "  2  bad input\n\n"
+      "  2  bad input, or a place that nothing can be written to\n\n"
       "Examples:\n"
       "  tenon-evaluate --cell hw/cells/gantry3.yaml --task planner/tasks/box_on_table_2d.yaml \\\n"
       "                 --plan plan.tnp -n 1000 --seed 1 --json out.json --report out.html");

@@ -308,7 +308,7 @@ int parse_and_simulate(int argc, char** argv) {
       "Exit status:\n"
       "  0  it ran until it was ended\n"
       "  1  physics gave up, and the run means nothing; or the truth could not be written\n"
-      "  2  bad input\n\n"
+      "  2  bad input, or a place that nothing can be written to\n\n"
       "Examples:\n"
       "  tenon-sim --cell hw/cells/gantry3.yaml --task planner/tasks/box_on_table_2d.yaml \\\n"
       "            --start 7 --seed 1 --can slcan-listen://127.0.0.1:29536 --json truth.json");

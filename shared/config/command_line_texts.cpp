@@ -256,9 +256,13 @@ std::string bash_completion(const CLI::App& app, const std::string& program) {
   std::string text = function + "() {\n  local word=${COMP_WORDS[COMP_CWORD]}\n";
   if (!cases.empty()) text += "  case ${COMP_WORDS[COMP_CWORD - 1]} in\n" + cases + "  esac\n";
   text += "  if [[ $word == -* ]]; then\n    COMPREPLY=($(compgen -W \"" +
-          strung({words.begin(), words.end()}, " ") +
-          "\" -- \"$word\"))\n  else\n    COMPREPLY=($(compgen -W \"" + strung(subcommands, " ") +
-          "\" -- \"$word\") $(compgen -f -- \"$word\"))\n  fi\n}\n";
+          strung({words.begin(), words.end()}, " ") + "\" -- \"$word\"))\n";
+  if (!subcommands.empty()) {
+    text += "  elif [[ $COMP_CWORD -eq 1 ]]; then\n    COMPREPLY=($(compgen -W \"" +
+            strung(subcommands, " ") + "\" -- \"$word\"))\n";
+  }
+  // A name of a file may hold blanks.
+  text += "  else\n    local IFS=$'\\n'\n    COMPREPLY=($(compgen -f -- \"$word\"))\n  fi\n}\n";
   return text + "complete -o filenames -F " + function + " " + program + "\n";
 }
 

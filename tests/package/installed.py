@@ -22,6 +22,8 @@ COMPLETIONS = [
     ("tenon-plan", ["--ch"], {"--check"}),
     ("tenon-plan", ["--method", "contact"], {"contact-greedy"}),
     ("tenon-can", ["sc"], {"scan"}),
+    ("tenon-plan", ["my"], {"my task.yaml"}),
+    ("tenon-can", ["scan", "my"], {"my task.yaml"}),
 ]
 
 
@@ -88,8 +90,9 @@ def check_completion(prefix, failures):
         function = "_" + program.replace("-", "_")
         script = (f"source {prefix}/share/bash-completion/completions/{program}; COMP_WORDS=({words});"
                   f" COMP_CWORD={len(line)}; {function}; printf '%s\\n' \"${{COMPREPLY[@]}}\"")
-        with tempfile.TemporaryDirectory() as empty:
-            offered = set(run("bash", "-c", script, cwd=empty).split())
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "my task.yaml").touch()
+            offered = set(run("bash", "-c", script, cwd=folder).splitlines())
         failures.check(offered == expected, f"{program} {line}: bash offers {offered}, not {expected}")
 
 
