@@ -87,6 +87,8 @@ bool listen(lcm::LCM& lcm) {
 struct Lines {
   static void take(const lcm::ReceiveBuffer* buffer, const std::string& channel, Lines* lines) {
     lines->say(lines->view.take(channel, bytes_of(*buffer)));
+    // What else comes says nothing of whether the run goes on.
+    if (channel != kCycleChannel && channel != kRunChannel) return;
     lines->heard_ns = monotonic_now_ns();
     lines->silence_told = false;
   }
@@ -245,7 +247,7 @@ int main(int argc, char** argv) {
         "  0  all that came, or all of the log, was shown or written\n"
         "  1  messages could not be decoded, or a log is damaged, breaks off or ends before its "
         "run\n"
-        "  2  bad input\n\n"
+        "  2  bad input, or a place that nothing can be written to\n\n"
         "Examples:\n"
         "  tenon-monitor\n"
         "  tenon-monitor --lcm-url 'file://run.lcmlog?speed=1'\n"

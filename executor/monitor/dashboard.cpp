@@ -64,7 +64,11 @@ std::vector<std::vector<Block>> columns_of(const RunModel& model, const View& vi
 void add_history(const RunModel& model, int width, std::size_t height, std::vector<Line>& lines) {
   constexpr std::size_t kLeast = 2;
   const Block history = history_block(model, width);
-  if (history.lines.empty() || lines.size() + kLeast > height) return;
+  if (history.lines.empty() || lines.size() >= height) return;
+  if (lines.size() + kLeast > height) {
+    lines.push_back(line_of("steps done: make the window higher", Style::kWarn));
+    return;
+  }
   if (lines.size() + kLeast < height) lines.emplace_back();
   lines.push_back(history.title);
   for (const Line& line : history.lines) {
@@ -77,12 +81,14 @@ std::vector<Line> body(const RunModel& model, const View& view, std::size_t heig
   const int width = (view.width - kGap * (columns - 1)) / columns;
   std::vector<Line> lines;
   const auto blocks = columns_of(model, view, columns, width);
+  const bool has_history = columns < 3 && !history_block(model, width).lines.empty();
   for (const Spacing& spacing : kSpacings) {
     std::vector<std::vector<Line>> stacks;
     stacks.reserve(blocks.size());
     for (const auto& column : blocks) stacks.push_back(stacked(column, spacing));
     lines = beside(stacks, width);
-    if (lines.size() <= height) break;
+    const std::size_t more = has_history && spacing.titles ? 1 : 0;
+    if (lines.size() + more <= height) break;
   }
   if (columns < 3) add_history(model, view.width, height, lines);
   if (lines.size() > height && height > 0) {
