@@ -1,7 +1,9 @@
 #include "planner/report/run_page.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -38,11 +40,11 @@ std::string ending(const RecordedRun& run) {
 }
 
 std::string timing(const RecordedRun& run) {
-  return badge(run.late_cycles == 0,
-               format("%llu of %llu cycles late; awake at most %.0f &micro;s after the due time",
-                      static_cast<unsigned long long>(run.late_cycles),
-                      static_cast<unsigned long long>(run.cycles + run.late_cycles),
-                      1e6 * run.wakeup_late_max_s));
+  return badge(
+      run.late_cycles == 0,
+      format("%llu cycles, %llu late; awake at most %.0f &micro;s after the due time",
+             static_cast<unsigned long long>(run.cycles),
+             static_cast<unsigned long long>(run.late_cycles), 1e6 * run.wakeup_late_max_s));
 }
 
 std::string badges(const Plan& plan, const RecordedRun& run) {
@@ -75,6 +77,9 @@ std::string faults(const RecordedRun& run) {
 }
 
 /// Along the plan's coordinates, beside what validation saw of this outcome.
+/// Without a sign where nothing is left.
+double in_tenths(double value) { return std::round(10.0 * value) / 10.0 + 0.0; }
+
 std::string travel(const Plan& plan, const RecordedStep& step) {
   const OutcomeRule& rule = plan.steps[step.step].rule(step.outcome);
   const bool expected = plan.check_envelopes && rule.successor != kSuccessorFail;
@@ -82,11 +87,11 @@ std::string travel(const Plan& plan, const RecordedStep& step) {
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(plan.coordinates, axis)) continue;
     text += format("%s%s %+.1f", text.empty() ? "" : "<br>", axis_name(axis),
-                   shown(step.travelled[axis], axis));
+                   in_tenths(shown(step.travelled[axis], axis)));
     if (!expected) continue;
     text += format(" <span class='term'>(%+.1f to %+.1f)</span>",
-                   shown(rule.envelope.travelled_min[axis], axis),
-                   shown(rule.envelope.travelled_max[axis], axis));
+                   in_tenths(shown(rule.envelope.travelled_min[axis], axis)),
+                   in_tenths(shown(rule.envelope.travelled_max[axis], axis)));
   }
   return text;
 }
@@ -119,6 +124,33 @@ std::string step_row(const Plan& plan, const RecordedStep& step, std::size_t num
              step.peak_force_N, step.duration_s);
 }
 
+/// Of the step in which the run ended, if it did not end the step: as far as the log tells.
+std::string unfinished_row(const Plan& plan, const RecordedRun& run) {
+  const auto last = std::find_if(run.samples.rbegin(), run.samples.rend(),
+                                 [](const RecordedCycle& sample) { return sample.step >= 0; });
+  if (last == run.samples.rend()) return "";
+  const std::int16_t step = last->step;
+  const std::size_t number = run.steps.size();
+  const bool known = static_cast<std::size_t>(step) < plan.steps.size();
+  if (!known || (number > 0 && static_cast<int>(run.steps.back().step) == step)) return "";
+  double force_N = 0.0;
+  double from_s = last->time_s;
+  for (auto sample = last; sample != run.samples.rend() && sample->step == step; ++sample) {
+    from_s = sample->time_s;
+    const double felt_N = std::hypot(sample->wrench[0], sample->wrench[1], sample->wrench[2]);
+    if (std::isfinite(felt_N)) force_N = std::max(force_N, felt_N);
+  }
+  const Step& planned = plan.steps[static_cast<std::size_t>(step)];
+  return format("<tr data-span='%zu'><th scope='row'>%d</th><td data-label='Move'>", number, step) +
+         drawing::displacement_text(planned) +
+         "</td><td data-label='Outcome' class='stopped'>unfinished <span class='term'>(" +
+         expected_outcomes(planned) + ")</span></td><td></td><td></td>" +
+         format(
+             "<td class='num' data-label='Force'>%.1f N</td>"
+             "<td class='num' data-label='Took'>%.2f s</td></tr>\n",
+             force_N, last->time_s - from_s);
+}
+
 std::string steps(const Plan& plan, const RecordedRun& run) {
   std::string html =
       "<section aria-labelledby='steps'><h2 id='steps'>Steps</h2>\n<p>What was, and in brackets "
@@ -126,7 +158,10 @@ std::string steps(const Plan& plan, const RecordedRun& run) {
       "<th>Step</th><th>Move</th><th>Outcome</th><th>Travelled (mm, deg)</th><th>Contacts</th>"
       "<th>Largest force</th><th>Took</th></tr></thead>\n<tbody>\n";
   for (std::size_t i = 0; i < run.steps.size(); ++i) html += step_row(plan, run.steps[i], i);
-  if (run.steps.empty()) html += "<tr><td colspan='7'>No step was finished.</td></tr>\n";
+  const std::string unfinished = unfinished_row(plan, run);
+  html += unfinished;
+  if (run.steps.empty() && unfinished.empty())
+    html += "<tr><td colspan='7'>No step was finished.</td></tr>\n";
   return html + "</tbody></table></div></section>\n";
 }
 

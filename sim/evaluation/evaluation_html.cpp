@@ -1,6 +1,7 @@
 #include "sim/evaluation/evaluation_html.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
@@ -59,6 +60,27 @@ std::string name_of(const Candidate& candidate) {
                                                      : candidate.file.substr(slash + 1));
 }
 
+/// A table whose cells are each named by their column too, for windows too narrow for columns.
+/// @param rows of cells "<td...>...</td>", as many as there are titles
+std::string carded_table(const std::vector<std::string>& titles,
+                         const std::vector<std::vector<std::string>>& rows) {
+  std::string html = "<div class='wide'><table class='moves nowrap'><thead><tr>";
+  for (std::size_t i = 0; i < titles.size(); ++i) {
+    const bool number = !rows.empty() && rows.front()[i].starts_with("<td class='num'");
+    html += (number ? "<th class='num'>" : "<th>") + titles[i] + "</th>";
+  }
+  html += "</tr></thead>\n";
+  for (const std::vector<std::string>& row : rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      constexpr std::size_t kTag = 3;  // "<td"
+      html += row[i].substr(0, kTag) + " data-label='" + titles[i] + "'" + row[i].substr(kTag);
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table></div>\n";
+}
+
 class Report {
  public:
   explicit Report(const Evaluation& evaluation) : evaluation_(evaluation), task_(evaluation.task) {
@@ -115,65 +137,68 @@ class Report {
   }
 
   [[nodiscard]] std::string plans_table() const {
-    std::string html =
-        "<div class='wide'><table class='nowrap'><tr><th>Plan</th><th>Method</th><th "
-        "class='num'>Steps</th>"
-        "<th>Succeeded</th>";
+    std::vector<std::string> titles = {"Plan", "Method", "Steps", "Succeeded"};
     for (const RateWithin& within : summaries_.front().within) {
-      html += "<th>W" + within_text(evaluation_.task, within.distance).substr(1) +
-              format(" (%.2f %% of draws)</th>", 1e2 * within.mass);
+      titles.push_back("W" + within_text(evaluation_.task, within.distance).substr(1) +
+                       format(" (%.2f %% of draws)", 1e2 * within.mass));
     }
     const bool tilts = std::any_of(summaries_.begin(), summaries_.end(),
                                    [](const Summary& summary) { return summary.tilts; });
-    if (tilts) {
-      html += format("<th>And tilted &le; %.2f&deg;</th>", shown(task_.tilt_rad, 3));
-    }
-    html += "<th class='num'>Stopped</th><th class='num'>Done but wrong</th></tr>\n";
+    if (tilts) titles.push_back(format("And tilted &le; %.2f&deg;", shown(task_.tilt_rad, 3)));
+    titles.insert(titles.end(), {"Stopped", "Done but wrong"});
+    std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < summaries_.size(); ++i) {
       const Candidate& candidate = evaluation_.candidates[i];
       const Summary& summary = summaries_[i];
-      html += "<tr><td><a href='#plan" + std::to_string(i) + "'>" + name_of(candidate) +
-              "</a></td><td>" + to_string(candidate.plan.method) + "</td>" +
-              number_cell(std::to_string(candidate.plan.steps.size())) + rate_cell(summary.success);
-      for (const RateWithin& within : summary.within) html += proportion_cell(within.rate);
-      if (tilts) html += proportion_cell(summary.promised);
-      html += number_cell(std::to_string(summary.stopped)) +
-              number_cell(std::to_string(summary.done_but_wrong)) + "</tr>\n";
+      std::vector<std::string> row = {
+          "<td><a href='#plan" + std::to_string(i) + "'>" + name_of(candidate) + "</a></td>",
+          std::string("<td>") + to_string(candidate.plan.method) + "</td>",
+          number_cell(std::to_string(candidate.plan.steps.size())), rate_cell(summary.success)};
+      for (const RateWithin& within : summary.within) row.push_back(proportion_cell(within.rate));
+      if (tilts) row.push_back(proportion_cell(summary.promised));
+      row.push_back(number_cell(std::to_string(summary.stopped)));
+      row.push_back(number_cell(std::to_string(summary.done_but_wrong)));
+      rows.push_back(std::move(row));
     }
-    return html + "</table></div>\n";
+    return carded_table(titles, rows);
   }
 
   [[nodiscard]] std::string errors_table() const {
-    std::string html =
-        "<div class='wide'><table class='nowrap'><tr><th>Runs that were done</th><th>Axis</th>"
-        "<th class='num'>Initial deviation</th><th class='num'>Final deviation</th>"
-        "<th class='num'>Ratio</th><th class='num'>Final mean</th>"
-        "<th class='num'>Distance, mean / max</th>"
-        "<th class='num'>Largest force, p50 / p99 / max</th>"
-        "<th class='num'>Time, p50</th></tr>\n";
+    const std::vector<std::string> titles = {"Runs that were done",
+                                             "Axis",
+                                             "Initial deviation",
+                                             "Final deviation",
+                                             "Ratio",
+                                             "Final mean",
+                                             "Distance, mean / max",
+                                             "Largest force, p50 / p99 / max",
+                                             "Time, p50"};
+    std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < summaries_.size(); ++i) {
       const Summary& summary = summaries_[i];
       bool first = true;
       for (const AxisError& error : summary.errors) {
         const int axis = error.axis;
         const char* unit = axis < 3 ? "mm" : "&deg;";
-        html += "<tr><td>" + (first ? name_of(evaluation_.candidates[i]) : "") + "</td><td>" +
-                axis_name(axis) + "</td>" +
-                number_cell(format("%.2f %s", shown(error.initial.deviation, axis), unit)) +
-                number_cell(format("%.4f %s", shown(error.final.deviation, axis), unit)) +
-                number_cell(ratio_text(error)) +
-                number_cell(format("%+.3f %s", shown(error.final.mean, axis), unit));
         const Quantiles& force = summary.contact_force_N;
-        html += number_cell(first ? format("%.2f / %.2f mm", 1e3 * summary.error_norm_m.mean,
-                                           1e3 * summary.error_norms_m.max)
-                                  : "");
-        html += number_cell(first ? format("%.1f / %.1f / %.1f N", force.p50, force.p99, force.max)
-                                  : "") +
-                number_cell(first ? format("%.1f s", summary.duration_s.p50) : "") + "</tr>\n";
+        std::vector<std::string> row = {
+            "<td>" + (first ? name_of(evaluation_.candidates[i]) : "") + "</td>",
+            std::string("<td>") + axis_name(axis) + "</td>",
+            number_cell(format("%.2f %s", shown(error.initial.deviation, axis), unit)),
+            number_cell(format("%.4f %s", shown(error.final.deviation, axis), unit)),
+            number_cell(ratio_text(error)),
+            number_cell(format("%+.3f %s", shown(error.final.mean, axis), unit)),
+            number_cell(first ? format("%.2f / %.2f mm", 1e3 * summary.error_norm_m.mean,
+                                       1e3 * summary.error_norms_m.max)
+                              : ""),
+            number_cell(first ? format("%.1f / %.1f / %.1f N", force.p50, force.p99, force.max)
+                              : ""),
+            number_cell(first ? format("%.1f s", summary.duration_s.p50) : "")};
+        rows.push_back(std::move(row));
         first = false;
       }
     }
-    return html + "</table></div>\n";
+    return carded_table(titles, rows);
   }
 
   [[nodiscard]] std::string section(std::size_t i) const {

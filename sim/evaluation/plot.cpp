@@ -184,8 +184,11 @@ std::string Plot::svg(const std::string& title) const {
   const double height = kTop_px + size_px_.y() + kBottom_px;
   const std::string frame = format("x='%.1f' y='%.1f' width='%.1f' height='%.1f'", kLeft_px,
                                    kTop_px, size_px_.x(), size_px_.y());
-  return format("<svg width='%.0f' height='%.0f' viewBox='0 0 %.1f %.1f' role='img'>\n", width,
-                height, width, height) +
+  // The page's style sheet asks for the width where it shows the plot narrower.
+  return format(
+             "<svg width='%.0f' height='%.0f' viewBox='0 0 %.1f %.1f' role='img' "
+             "style='--drawn-width:%.0f'>\n",
+             width, height, width, height, width) +
          "<title>" + drawing::escaped(title) + "</title>\n<rect class='ground' " + frame + "/>\n" +
          format(
              "<svg x='%.1f' y='%.1f' width='%.1f' height='%.1f' viewBox='%.1f %.1f %.1f %.1f'>\n",

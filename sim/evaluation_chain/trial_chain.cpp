@@ -66,7 +66,7 @@ void TrialChain::follow() {
 
 void TrialChain::record(Recording& recording) const {
   const executor::CycleRecord& cycle = last_cycle(runner_);
-  if (cycle.moving) recording.feel(executor::vector_of(cycle.wrench));
+  recording.feel(executor::vector_of(cycle.wrench));
   Moment moment;
   moment.time_ns = cycle.motion_ns - began_ns_;
   if (!recording.is_due(moment.time_ns)) return;

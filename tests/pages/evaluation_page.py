@@ -81,7 +81,12 @@ def lit(browser):
 def replay(browser, name, results, failures):
     """A click on a failed run's button plays it to its end, where the page says what the JSON says."""
     run = next(run for run in results["plans"][0]["runs"] if run["class"] != "succeeded" and run["step"] >= 0)
-    goal = json.loads(browser.evaluate("document.getElementById('page-data').textContent"))["goal"]
+    data = json.loads(browser.evaluate("document.getElementById('page-data').textContent"))
+    goal = data["goal"]
+    # From the first moment on: no sensor reads exactly nothing, when no move runs either.
+    for recording in data["plans"][0]["recordings"]:
+        unfelt = sum(not any(wrench) for wrench in list(zip(*recording["wrench"]))[1:])
+        failures.check(unfelt == 0, f"{name}: run {recording['run']} feels nothing in {unfelt} moments")
     browser.evaluate("(() => { const s = document.querySelector('.controls select'); s.value = '4';"
                      " s.dispatchEvent(new Event('change')); })()")
     # At once, for it plays.

@@ -27,7 +27,7 @@ class Plot {
     Object.assign(this, { plots, unit, digits, height, series, times, draw, bare });
     this.key = element("div", { class: "legend curves-key" });
     this.canvas = element("div", { class: "plot" });
-    this.heading = element("h3", {}, title);
+    this.heading = element("h3", {}, unit ? `${title} (${unit})` : title);
     this.box = element("div", { class: "plot-box" }, this.heading, this.key, this.canvas);
     if (note) this.box.append(element("p", { class: "note" }, note));
     plots.host.append(this.box);
