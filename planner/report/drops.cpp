@@ -15,7 +15,7 @@ std::string listed(const std::set<std::string>& names) {
 }
 
 /// What the step did to contacts: they began, ended, or were kept while it slid or turned.
-std::string cause_of(const ReportData& data, std::size_t step) {
+std::string cause_among(const ReportData& data, std::size_t step) {
   std::string text;
   const auto add = [&](const std::set<std::string>& names, const char* verb) {
     if (names.empty()) return;
@@ -27,6 +27,13 @@ std::string cause_of(const ReportData& data, std::size_t step) {
   const std::set<std::string> kept = touched_after(data, step);
   return kept.empty() ? "without a contact: where each start ends differs less"
                       : "pressed against " + listed(kept) + " while it moves";
+}
+
+/// Among those whose uncertainty the nodes tell: see ReportData::nodes.
+std::string cause_of(const ReportData& data, std::size_t step) {
+  if (!data.is_baseline()) return cause_among(data, step);
+  const std::vector<Chain> drawn = finished(data.validation);
+  return cause_among({data.plan, data.task, drawn, data.certified, data.validation, {}}, step);
 }
 
 }  // namespace

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
+#include "planner/judge/plan_draft.h"
+#include "planner/report/drops.h"
 #include "planner/report/html_report.h"
 #include "planner/report/inspection.h"
 #include "planner/report/summary.h"
@@ -54,6 +57,32 @@ TEST(Report, ShowsTheUncertaintyThatABaselineDoesNotKnow) {
   EXPECT_NE(html.find("baseline <b>single-particle</b>"), std::string::npos);
   EXPECT_NE(html.find("Root of u of the random starts"), std::string::npos);
   EXPECT_EQ(html.find("Why it works"), std::string::npos);
+}
+
+// Its one particle moves freely; the draws, whose uncertainty it is, are stopped by a wall.
+TEST(Report, ABaselinesDropIsExplainedByTheDraws) {
+  Task task = room_task();
+  task.held = {{"part", Shape::Kind::kBox, Vector3::Constant(0.1), {}}};
+  task.environment = {{"low", Shape::Kind::kBox, Vector3::Constant(0.1), {}}};
+  const std::vector<Vector6> displacements = {Vector6::Unit(0) * -0.1};
+  Plan plan = draft_plan(task, task.starts.front(), {}, displacements);
+  plan.method = PlanMethod::kSingleParticle;
+  Chain chain;
+  chain.moves.resize(1);
+  chain.steps = {0};
+  chain.touching = {{}};
+  chain.done = true;
+  const std::vector<Chain> known = {chain};
+  chain.touching = {{"part-low"}};
+  Validation validation;
+  validation.draws.resize(1);
+  validation.draws.front().chain = chain;
+  BeliefNode before;
+  before.spread[0] = 0.04;
+  const ReportData data{plan, task, known, true, validation, {before, BeliefNode{}}};
+  const std::vector<Drop> drops = drops_in(data, 0);
+  ASSERT_EQ(drops.size(), 1U);
+  EXPECT_EQ(drops.front().why, "contact with low begins");
 }
 
 TEST(Report, TheStepTableNamesEveryStepAndItsEnd) {
