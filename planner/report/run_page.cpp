@@ -135,10 +135,15 @@ std::string unfinished_row(const Plan& plan, const RecordedRun& run) {
   if (!known || (number > 0 && static_cast<int>(run.steps.back().step) == step)) return "";
   double force_N = 0.0;
   double from_s = last->time_s;
+  const auto feel = [&](const RecordedCycle& sample) {
+    const double felt_N = std::hypot(sample.wrench[0], sample.wrench[1], sample.wrench[2]);
+    if (std::isfinite(felt_N)) force_N = std::max(force_N, felt_N);
+  };
+  // The cycle that a fault ends has no step any more; what it felt is what ended the step.
+  if (last != run.samples.rbegin()) feel(*std::prev(last));
   for (auto sample = last; sample != run.samples.rend() && sample->step == step; ++sample) {
     from_s = sample->time_s;
-    const double felt_N = std::hypot(sample->wrench[0], sample->wrench[1], sample->wrench[2]);
-    if (std::isfinite(felt_N)) force_N = std::max(force_N, felt_N);
+    feel(*sample);
   }
   const Step& planned = plan.steps[static_cast<std::size_t>(step)];
   return format("<tr data-span='%zu'><th scope='row'>%d</th><td data-label='Move'>", number, step) +

@@ -67,8 +67,15 @@ def look_at(browser, file, fragment, webgl, failures, pictures, served=None):
             failures.check(not fragment or browser.evaluate(f"{ROOT}.step") == "1", f"{name}: does not open at {fragment}")
             wide = browser.evaluate("document.documentElement.scrollWidth")
             failures.check(wide <= width, f"{name}: {wide} px wide")
-            renderer = browser.evaluate("document.querySelector('.canvas').dataset.renderer")
-            failures.check(renderer == ("webgl" if webgl else "svg"), f"{name}: drawn by {renderer}")
+            if webgl:
+                rise(browser)
+            shown = browser.evaluate("[...document.querySelectorAll('.canvas > *')].filter(e => e.getClientRects().length)"
+                                     ".map(e => e.localName).join()")
+            failures.check(shown == ("canvas" if webgl else "svg"), f"{name}: the scene is drawn by {shown}")
+            choices = browser.evaluate("document.querySelector('.views').textContent")
+            failures.check(("In space" in choices) == webgl, f"{name}: offers the views {choices}")
+            boxes = browser.evaluate("[...document.querySelectorAll('.in-space')].map(e => e.getClientRects().length > 0)")
+            failures.check(all(box == webgl for box in boxes), f"{name}: the box that cuts the scene open is seen: {boxes}")
             over = browser.evaluate(OVER_THE_SCENE)
             failures.check(not over, f"{name}: over the scene stand {over}")
             for said in browser.said():
@@ -87,11 +94,39 @@ def look_at(browser, file, fragment, webgl, failures, pictures, served=None):
             failures.check(not cut, f"{name}: a long name is cut off in {cut}")
 
 
-def opening_s(browser, file):
-    """From the address to a page that can be used, as the page's own clock says when it is asked."""
+def rise(browser):
+    """Until the scene stands in space: the page is flat, and can be used, before."""
+    browser.wait_for("document.querySelector('.canvas').dataset.renderer === 'webgl'")
+
+
+def keep_view(browser, file, failures):
+    """A view chosen while the page is still flat stays the chosen one in space."""
     browser.open(file)
     browser.wait_for(f"{ROOT}.ready === 'true'")
-    return 1e-3 * browser.evaluate("performance.now()")
+    flat = browser.evaluate("(() => { const picture = document.querySelector('.canvas'); const first ="
+                            " document.querySelector('.views button'); first.click();"
+                            " return picture.dataset.renderer + ' ' + first.textContent; })()")
+    rise(browser)
+    pressed = browser.evaluate("document.querySelector('.views [aria-pressed=true]').textContent")
+    failures.check(flat == f"svg {pressed}", f"{file.stem}: '{flat}' was chosen, in space it is '{pressed}'")
+    failures.check(not browser.said(), f"{file.stem}: says something while it rises")
+
+
+# The time of the first frame of a page that can be used, by its own clock.
+FIRST_FRAME = """new MutationObserver((_, observer) => {
+  if (document.documentElement?.dataset.ready !== 'true') return;
+  observer.disconnect();
+  requestAnimationFrame(() => setTimeout(() => { window.firstFrame_ms = performance.now(); }));
+}).observe(document, { attributes: true, subtree: true });"""
+
+
+def opening_s(browser, file):
+    """From the address to the first frame of a page that can be used."""
+    script = browser.call("Page.addScriptToEvaluateOnNewDocument", source=FIRST_FRAME)["identifier"]
+    browser.open(file)
+    browser.wait_for("window.firstFrame_ms")
+    browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+    return 1e-3 * browser.evaluate("window.firstFrame_ms")
 
 
 def press(browser, key):
@@ -176,6 +211,7 @@ def main(failures):
                     look_at(browser, file, "#step=1.5", webgl, failures, arguments.pictures)
                 play(browser, files[0], failures)
                 if webgl:
+                    keep_view(browser, files[0], failures)
                     continue  # words and numbers are the same
                 for file in files:
                     text = print_page(browser, file, failures, arguments.pictures)

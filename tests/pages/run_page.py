@@ -11,6 +11,7 @@ import argparse
 import json
 import math
 import pathlib
+import re
 import struct
 import subprocess
 import tempfile
@@ -72,6 +73,7 @@ def write_pages(arguments, folder, failures):
     wanted = {
         "box": [*task, *run("box"), *log("box")],
         "fault": [*task, *run("fault"), *log("fault")],
+        "forced": [*task, *run("forced"), *log("forced")],
         "missed": [*task, *log("missed")],
         "bare": [*run("box"), *log("box")],
         "result": [*task, *run("box")],
@@ -174,13 +176,18 @@ def use(browser, page, failures):
 def tell(browser, pages, failures):
     """What each page says of how its run ended, and of what it lacks."""
     text = lambda: browser.evaluate("document.body.innerText")
-    for name, wanted in (("fault", ["Not done", "Faults", "unfinished ("]), ("missed", ["Not done"]),
+    for name, wanted in (("fault", ["Not done", "Faults", "unfinished ("]),
+                         ("forced", ["external force", "unfinished ("]), ("missed", ["Not done"]),
                          ("cut", ["breaks off within a message", "Its end is not in the log"]),
                          ("result", ["give it with --log"]), ("bare", ["give it with --task", "Done"])):
         browser.open(pages[name])
         browser.wait_for(f"{ROOT}.ready === 'true'")
         for words in wanted:
             failures.check(words in text(), f"{name}: does not say '{words}'")
+        if name == "forced":  # the cycle that ended the step has none any more
+            ended_by_N = float(re.search(r"external force ([\d.]+) N", text())[1])
+            row = browser.evaluate("document.querySelector('td.stopped').parentElement.textContent")
+            failures.check(f"{ended_by_N:.1f} N" in row, f"forced: {ended_by_N} N ended the step, its row says '{row}'")
     browser.open(pages["fault"])
     browser.wait_for(f"{ROOT}.ready === 'true'")
     fault = data_of(browser)["run"]["faults"][-1]

@@ -56,8 +56,8 @@ class EvaluationPage {
       box("paths", "muted", "paths of runs"),
       keyOf("goal", "goal"),
       keyOf("contact", "touched"),
+      cutBox(this.options, () => this.update(this.player.time)),
     );
-    if (HAS_WEB_GL) legend.append(box("cut", "environment", "cut open"));
     this.filters = element("div", { class: "filters", role: "group", "aria-label": "Runs that are shown" });
     this.stage = new Stage(host, this.data, [this.filters, this.player.controls], legend);
     this.buildFilters();

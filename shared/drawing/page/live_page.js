@@ -62,9 +62,7 @@ class LivePage {
       keyOf("contact", "touched"),
     );
     if (this.data.nominal) legend.append(keyOf("muted", "where the robot believes it to be"));
-    if (HAS_WEB_GL) {
-      legend.append(optionBox(this.options, "cut", "environment", "cut open", () => this.draw()));
-    }
+    legend.append(cutBox(this.options, () => this.draw()));
     this.stage = new Stage(host, this.data, [], legend);
     this.heading = element("h2", { "aria-live": "polite" });
     this.words = element("div", { class: "words" });

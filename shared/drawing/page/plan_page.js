@@ -63,8 +63,8 @@ class PlanPage {
       this.data.draws.length ? box("draws", "muted", this.data.draws.length + " random starts") : null,
       keyOf("goal", "goal"),
       keyOf("contact", "touched"),
+      cutBox(this.options, () => this.update(this.player.time)),
     );
-    if (HAS_WEB_GL) legend.append(box("cut", "environment", "cut open"));
     this.nameFront();
     return legend;
   }

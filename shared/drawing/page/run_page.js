@@ -117,8 +117,8 @@ class RunPage {
       count ? box("particles", "particle", "particles") : null,
       count ? keyOf("goal", "goal") : null,
       this.run.fit ? box("fit", "ink", "moved onto the goal") : null,
+      count ? cutBox(this.options, () => this.update(this.player.time)) : null,
     );
-    if (HAS_WEB_GL && count) legend.append(box("cut", "environment", "cut open"));
     this.stage = new Stage(host, this.data, [this.player.controls], legend);
     this.heading = element("h2", {});
     this.words = element("div", { class: "words", "aria-live": "polite" });

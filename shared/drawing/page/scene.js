@@ -1,4 +1,4 @@
-// One picture of a scene, in space where WebGL is to be had and flat otherwise, with its choice of views.
+// One picture of a scene: flat at once, in space as soon as WebGL is ready, with its choice of views.
 
 function element(name, attributes = {}, ...children) {
   const made = document.createElement(name);
@@ -29,28 +29,64 @@ function onColours(callback) {
 }
 
 const SPACE = { title: "In space" };
+const CALM_FRAME_MS = 40;
+const CALM_FRAMES = 4;
+const CALM_MOST_MS = 1500;
+
+// Until frames follow each other at once: the browser has then drawn what it had to. Who asks for a WebGL context before
+// waits for all of that, and the page with him, up to a second and a half where no graphics card is.
+async function calm() {
+  const frame = () => new Promise(requestAnimationFrame);
+  const start = await frame();
+  let last = start;
+  for (let inTime = 0; inTime < CALM_FRAMES && last - start < CALM_MOST_MS; ) {
+    const now = await frame();
+    inTime = now - last < CALM_FRAME_MS ? inTime + 1 : 0;
+    last = now;
+  }
+}
 
 class ScenePicture {
-  constructor(host, data) {
+  // @param rising: called when the picture stands in space, and has a view more
+  constructor(host, data, rising) {
     this.host = host;
     this.data = data;
-    const bounds = boundsOf(data);
-    this.space = HAS_WEB_GL;
-    this.scene = this.space
-      ? new GlScene(host, data, bounds, colours())
-      : new SvgScene(host, data, bounds, colours());
-    host.dataset.renderer = this.space ? "webgl" : "svg";
-    this.views = this.space ? [SPACE, ...data.views] : data.views;
-    this.setView(this.views[0]);
-    if (this.space) {
-      new ResizeObserver(() => this.resize()).observe(host);
-      this.resize();
-    }
+    this.rising = rising;
+    this.bounds = boundsOf(data);
+    this.scene = new SvgScene(host, data, this.bounds, colours());
+    host.dataset.renderer = "svg";
+    this.space = false;
+    this.views = data.views;
+    this.view = this.views[0];
     onColours((palette) => this.scene.recolour(palette));
+    this.rise();
+  }
+
+  async rise() {
+    await calm();
+    const inSpace = await GlScene.readyWithin(this.host, this.data, this.bounds, colours());
+    if (!inSpace) return;
+    this.scene.dispose();
+    this.scene = inSpace;
+    this.space = true;
+    this.host.dataset.renderer = "webgl";
+    this.views = [SPACE, ...this.data.views];
+    inSpace.show();
+    inSpace.recolour(colours());
+    this.setView(this.chosen ? this.view : SPACE);
+    if (this.last) inSpace.draw(...this.last);
+    new ResizeObserver(() => this.resize()).observe(this.host);
+    this.resize();
+    this.rising();
   }
 
   resize() {
     if (this.host.clientWidth) this.scene.resize(this.host.clientWidth, this.host.clientHeight);
+  }
+
+  choose(view) {
+    this.chosen = true;
+    this.setView(view);
   }
 
   setView(view) {
@@ -76,6 +112,7 @@ class ScenePicture {
   }
 
   draw(state, options) {
+    this.last = [state, options];
     this.scene.draw(state, options);
   }
 }

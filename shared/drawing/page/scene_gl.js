@@ -1,26 +1,36 @@
 // The scene in space, drawn by WebGL with an orthographic camera, in millimetres.
 
-// Asked once: where no graphics card is, a context takes a tenth of a second.
-const HAS_WEB_GL = (() => {
-  try {
-    return Boolean(document.createElement("canvas").getContext("webgl2"));
-  } catch {
-    return false;
-  }
-})();
-
 class GlScene {
-  constructor(host, data, bounds, palette) {
+  // Hidden in its host until it is shown; null where the browser has no WebGL that works. What it is drawn by is made
+  // beside the page's own work.
+  static async readyWithin(host, data, bounds, palette) {
+    const canvas = element("canvas", {
+      role: "img",
+      "aria-label": "The part, its particles and the environment in space",
+      hidden: "",
+    });
+    const context = canvas.getContext("webgl2", { antialias: true, alpha: true });
+    if (!context) return null;
+    host.append(canvas);
+    try {
+      const made = new GlScene(canvas, context, data, bounds, palette);
+      made.renderer.compile(made.scene, made.camera);
+      await calm();
+      return made;
+    } catch {
+      canvas.remove();
+      return null;
+    }
+  }
+
+  constructor(canvas, context, data, bounds, palette) {
     const T = TenonLibraries;
     this.data = data;
     this.bounds = bounds;
-    this.renderer = new T.WebGLRenderer({ antialias: true, alpha: true });
+    this.canvas = canvas;
+    this.renderer = new T.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
     this.renderer.localClippingEnabled = true;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.canvas = this.renderer.domElement;
-    this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", "The part, its particles and the environment in space");
-    host.append(this.canvas);
     this.scene = new T.Scene();
     this.centre = bounds.low.map((value, i) => 500 * (value + bounds.high[i]));
     this.size = 1e3 * Math.hypot(...bounds.high.map((value, i) => value - bounds.low[i]));
@@ -348,6 +358,10 @@ class GlScene {
     if (this.painted) this.paint();
   }
 
+  show() {
+    this.canvas.hidden = false;
+  }
+
   // Once a frame, however much has changed: building a scene changes most of it several times over.
   render() {
     if (!this.asked) this.asked = requestAnimationFrame(() => this.paint());
@@ -358,12 +372,5 @@ class GlScene {
     this.asked = 0;
     this.painted = true;
     if (this.width) this.renderer.render(this.scene, this.camera);
-  }
-
-  dispose() {
-    cancelAnimationFrame(this.asked);
-    this.controls.dispose();
-    this.renderer.dispose();
-    this.canvas.remove();
   }
 }

@@ -1,4 +1,4 @@
-// The scene as flat SVG along one axis of the task frame, in millimetres: where there is no WebGL.
+// The scene as flat SVG along one axis of the task frame, in millimetres: where there is no WebGL, or not yet.
 
 const SVG_NAMESPACE = "http://www.w3.org/2000/svg";
 
@@ -42,6 +42,10 @@ class SvgScene {
       path += "M" + corners.map((p) => p[0].toFixed(2) + "," + p[1].toFixed(2)).join("L") + "Z";
     }
     return path;
+  }
+
+  dispose() {
+    this.svg.remove();
   }
 
   recolour(palette) {

@@ -30,6 +30,13 @@ function optionBox(options, name, colour, text, changed) {
   );
 }
 
+// Only a scene in space is cut open.
+function cutBox(options, changed) {
+  const box = optionBox(options, "cut", "environment", "cut open", changed);
+  box.classList.add("in-space");
+  return box;
+}
+
 function keyOf(colour, ...children) {
   return element(
     "span",
@@ -50,15 +57,21 @@ class Stage {
     this.views = element("div", { class: "views", role: "group", "aria-label": "Views" });
     this.now = element("aside", { class: "now", "aria-label": "What happens now" });
     host.append(element("div", { class: "picture" }, this.views, canvas, ...controls, legend), this.now);
-    this.picture = new ScenePicture(canvas, data);
-    for (const view of this.picture.views) {
-      const button = element("button", { type: "button" }, view.title);
-      button.addEventListener("click", () => {
-        this.picture.setView(view);
-        this.markView();
-      });
-      this.views.append(button);
-    }
+    this.picture = new ScenePicture(canvas, data, () => this.listViews());
+    this.listViews();
+  }
+
+  listViews() {
+    this.views.replaceChildren(
+      ...this.picture.views.map((view) => {
+        const button = element("button", { type: "button" }, view.title);
+        button.addEventListener("click", () => {
+          this.picture.choose(view);
+          this.markView();
+        });
+        return button;
+      }),
+    );
     this.markView();
   }
 

@@ -102,5 +102,7 @@ int main(int argc, char** argv) {
   write_run(argv[1], "missed", missed);
   options.faults = {sim::parse_fault("silent-node:node=2,at=step:2")};
   write_run(argv[1], "fault", options);
+  options.faults = {sim::parse_fault("forged-force:at=step:2,force_N=80,duration_s=0.1")};
+  write_run(argv[1], "forced", options);
   return 0;
 }
