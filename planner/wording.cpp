@@ -25,7 +25,9 @@ std::string nearest(const BeliefGraph& graph) {
 
 /// What has been tried by then.
 std::string tried(const PlanReport& report, const BeliefGraph& graph) {
-  return format("%zu expansions and %zu refuted paths", report.expansions, report.refusals.size()) +
+  return format("%zu expansion%s and %zu refuted path%s", report.expansions,
+                report.expansions == 1 ? "" : "s", report.refusals.size(),
+                report.refusals.size() == 1 ? "" : "s") +
          nearest(graph) +
          (report.refusals.empty() ? "" : "; last refuted: " + report.refusals.back());
 }
@@ -68,8 +70,8 @@ std::vector<std::string> heuristic_names(const std::vector<Guide>& guides) {
 }
 
 std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves) {
-  std::string text = format("%zu guides, found with %llu moves", guides.size(),
-                            static_cast<unsigned long long>(moves));
+  std::string text = format("%zu guide%s, found with %llu moves", guides.size(),
+                            guides.size() == 1 ? "" : "s", static_cast<unsigned long long>(moves));
   for (const Guide& guide : guides) text += "; " + guide_text(guide);
   return text;
 }

@@ -119,6 +119,8 @@ std::vector<std::string> missed(const PlanReport& report, const Task& task) {
   return lines;
 }
 
+const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
+
 std::string cost_text(const Plan& plan) {
   return format("cost %.0f, ", plan.cost) +
          (plan.bound > 0.0
@@ -186,10 +188,11 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
                  plan.steps.size(), report.bytes.size());
   text += cost_text(plan);
   text += format(
-      "search: %zu expansions (%zu for the first path), %zu states, %zu guides, "
-      "%zu refuted paths\n",
-      report.expansions, report.expansions_first, report.states, report.guides,
-      report.refusals.size());
+      "search: %zu expansion%s (%zu for the first path), %zu state%s, %zu guide%s, "
+      "%zu refuted path%s\n",
+      report.expansions, plural(report.expansions), report.expansions_first, report.states,
+      plural(report.states), report.guides, plural(report.guides), report.refusals.size(),
+      plural(report.refusals.size()));
   if (!report.guide.empty())
     text += "way: the guide " + report.guide + ", followed to the letter\n";
   text += format(
