@@ -52,6 +52,13 @@ class GuideSearch {
     });
   }
 
+  /// And no tilt puts off what they touch.
+  [[nodiscard]] bool holds() const {
+    return std::any_of(found_.begin(), found_.end(), [this](const Guide& guide) {
+      return left_m2(guide) <= task_.goal_uncertainty_m2 && tilt_off_m(guide) <= 0.0;
+    });
+  }
+
   /// Pushes from opposite every face that stands across an axis, and from drawn places, with the
   /// start's spread, then guides that go from one of the contacts to the next: for parts that a
   /// push from the start does not meet.
@@ -95,12 +102,13 @@ class GuideSearch {
   }
 
   /// Those to whose contacts straight legs lead, then those that leave no more than the goal's
-  /// uncertainty, or as little as any, then the cheapest. Who makes the contacts one after the
-  /// other, and again, may know more in the end than was left after each.
+  /// uncertainty, or as little as any, then those that a tilt puts off least, then the cheapest.
+  /// Who makes the contacts one after the other, and again, may know more in the end than was left
+  /// after each.
   void sort() {
     const double enough_m2 = least_left_m2();
     const auto key = [&](const Guide& guide) {
-      return std::tuple(far(guide), left_m2(guide) > enough_m2, edges(guide),
+      return std::tuple(far(guide), left_m2(guide) > enough_m2, edges(guide), tilt_off_m(guide),
                         foliated_heuristic(seed_, guide, task_));
     };
     std::stable_sort(found_.begin(), found_.end(),
@@ -156,6 +164,14 @@ class GuideSearch {
                          [](const ContactAttractor& contact) { return !contact.in_legs; });
   }
 
+  /// What a tilt makes of a guide's contacts. The lattice alone has no moves to choose by that.
+  [[nodiscard]] double tilt_off_m(const Guide& guide) const {
+    if (!task_.guide_moves) return 0.0;
+    double sum_m = 0.0;
+    for (const ContactAttractor& contact : guide.contacts) sum_m += contact.tilt_off_m;
+    return sum_m;
+  }
+
   [[nodiscard]] static bool contains(const std::vector<ContactAttractor>& contacts, int axis) {
     return std::any_of(contacts.begin(), contacts.end(), [axis](const ContactAttractor& contact) {
       return contact.axis == axis || has(contact.flat, axis);
@@ -175,7 +191,8 @@ class GuideSearch {
                       other.contacts.end(), same_face)) {
         continue;
       }
-      if (far(guide) < far(other)) other = guide;
+      const auto cost = [this](const Guide& of) { return std::pair(far(of), tilt_off_m(of)); };
+      if (cost(guide) < cost(other)) other = guide;
       return;
     }
     found_.push_back(guide);
@@ -238,13 +255,14 @@ class GuideSearch {
 Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngine& succ,
                            Rollout& rollout, const std::function<bool()>& stop,
                            const std::function<std::vector<Guide>()>& in_turn) {
-  ContactPushes pushes(task, start, succ, rollout, stop);
+  std::vector<Pose> goals = goal_attractors(task, start, succ);
+  ContactPushes pushes(task, start, goals.back(), succ, rollout, stop);
   GuideSearch search(task, start, pushes, stop);
   search.push_from(start, {});
   const Belief about_goal = pushes.spread_about(task.goal);
   if (!about_goal.particles.empty()) search.push_from(about_goal, {});
   std::vector<Guide> turns;
-  if (!search.certain()) {
+  if (!search.holds()) {
     if (in_turn && search.turned()) turns = in_turn();
     if (!search.certain_of(turns)) search.look_around();
   }
@@ -256,8 +274,8 @@ Attractors find_attractors(const Task& task, const Belief& start, SuccessorEngin
 
   const CoordinateMask unsettled = search.unsettled();
   std::vector<Guide> candidates = search.candidates();
-  Attractors found{search.take(), std::move(candidates), goal_attractors(task, start, succ),
-                   unsettled, std::move(turns)};
+  Attractors found{search.take(), std::move(candidates), std::move(goals), unsettled,
+                   std::move(turns)};
   if (found.goals.size() > 1 && !found.guides.empty()) {
     Guide through = found.guides.front();
     through.goals.insert(through.goals.begin(), found.goals.back());

@@ -8,6 +8,7 @@
 #include "planner/search/guide_moves.h"
 #include "planner/search/placing.h"
 #include "planner/search/push_places.h"
+#include "planner/search/tilt_offset.h"
 
 namespace tenon::planner {
 namespace {
@@ -26,11 +27,13 @@ bool on_face(const Belief& belief, const Primitive& push) {
 
 }  // namespace
 
-ContactPushes::ContactPushes(const Task& task, const Belief& start, SuccessorEngine& succ,
-                             Rollout& rollout, const std::function<bool()>& stop)
+ContactPushes::ContactPushes(const Task& task, const Belief& start, const Pose& mouth,
+                             SuccessorEngine& succ, Rollout& rollout,
+                             const std::function<bool()>& stop)
     : task_(task),
       primitives_(long_primitives(task)),
       whole_{start, summarise(start, task), 0},
+      mouth_(mouth),
       succ_(succ),
       rollout_(rollout),
       stop_(stop) {}
@@ -46,6 +49,28 @@ void ContactPushes::against_faces(KnownContacts& known) {
   against_faces(whole_, known);
   const CoordinateMask open = without_legs(known);
   if (open != 0) against_faces(settled_but(open), known);
+  over_rims(known);
+}
+
+/// The part may be met beside a face anywhere along an axis. Where a tilt would put off what it is
+/// told there, it is met at a rim that is near the mouth once the axis is settled.
+void ContactPushes::over_rims(KnownContacts& known) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& of_axis = known[static_cast<std::size_t>(axis)];
+    if (of_axis.empty() || whole_.seed.spread[axis] <= 0.0 || !any_off(known)) continue;
+    Spread over = settled_but(task_.coordinates & ~static_cast<CoordinateMask>(1U << axis));
+    over.over_rim = axis;
+    against_faces(over, known);
+  }
+}
+
+bool ContactPushes::any_off(const KnownContacts& known) const {
+  return std::any_of(known.begin(), known.end(), [](const auto& of_axis) {
+    return !of_axis.empty() &&
+           std::none_of(of_axis.begin(), of_axis.end(), [](const ContactAttractor& contact) {
+             return contact.in_legs && contact.tilt_off_m <= 0.0;
+           });
+  });
 }
 
 void ContactPushes::from_drawn(Random& random, KnownContacts& known) {
@@ -97,9 +122,11 @@ std::vector<ContactPushes::Pushed> ContactPushes::together(const Belief& belief,
     const BeliefSummary end = summarise(*ends[i], task_);
     if (end.spread[axis] >= task_.attractor_ratio * from.spread[axis]) continue;
     if (out_of_reach(from.mean, end.mean)) continue;
-    found.push_back({{axis, sign_of(pushes[i]), end.mean, end.spread[axis], end.uncertainty_m2,
-                      on_face(*ends[i], pushes[i]), std::nullopt},
-                     *ends[i]});
+    Pushed pushed{{axis, sign_of(pushes[i]), end.mean, end.spread[axis], end.uncertainty_m2,
+                   on_face(*ends[i], pushes[i]), std::nullopt},
+                  *ends[i]};
+    pushed.contact.tilt_off_m = tilt_offset_m(task_, axis, end.mean, mouth_);
+    found.push_back(std::move(pushed));
   }
   return found;
 }
@@ -158,12 +185,13 @@ void ContactPushes::against_faces(const Spread& from, KnownContacts& known) {
 /// there.
 Belief ContactPushes::opposite(const TouchPlace& side, const Primitive& push,
                                const Eigen::AlignedBox3d& part, const Spread& from) const {
-  const PartBefore before{part, from.seed, axis_of(push), sign_of(push)};
+  const PartBefore before{part, from.seed, axis_of(push), sign_of(push), from.over_rim};
   for (const Pose& place : places_before(side, before, task_)) {
     if (out_of_reach(whole_.seed.mean, place) || !legs_lead(from, place)) continue;
     Belief belief = about(place, from);
     if (!belief.particles.empty()) return belief;
   }
+  if (from.over_rim >= 0) return {};
   const Pose middle = middle_before(side, before, task_);
   return out_of_reach(whole_.seed.mean, middle) ? Belief{} : about(middle, from);
 }
@@ -197,10 +225,14 @@ void ContactPushes::remember(const ContactAttractor& contact, KnownContacts& kno
     if (worth(contact) < worth(*same)) *same = contact;
   } else if (of_axis.size() < kMaxContactsAnAxis) {
     of_axis.push_back(contact);
-  } else if (contact.in_legs) {
-    const auto far_one = std::find_if(of_axis.rbegin(), of_axis.rend(),
-                                      [](const ContactAttractor& of) { return !of.in_legs; });
-    if (far_one != of_axis.rend()) *far_one = contact;
+  } else {
+    const auto cost = [](const ContactAttractor& of) {
+      return std::pair(!of.in_legs, of.tilt_off_m);
+    };
+    const auto worst = std::max_element(
+        of_axis.begin(), of_axis.end(),
+        [&](const ContactAttractor& a, const ContactAttractor& b) { return cost(a) < cost(b); });
+    if (cost(contact) < cost(*worst)) *worst = contact;
   }
 }
 
@@ -208,7 +240,7 @@ std::vector<ContactAttractor>::iterator ContactPushes::find_known(
     const ContactAttractor& contact, std::vector<ContactAttractor>& others) const {
   return std::find_if(others.begin(), others.end(), [&](const ContactAttractor& other) {
     const Vector6 apart = displacement_between(contact.mean, other.mean);
-    return std::abs(apart[contact.axis]) < 0.1 * task_.step_m &&
+    return other.after == contact.after && std::abs(apart[contact.axis]) < 0.1 * task_.step_m &&
            (!other.via || apart.head<3>().norm() < task_.step_m);
   });
 }

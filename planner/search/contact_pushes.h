@@ -24,8 +24,9 @@ using KnownContacts = std::array<std::vector<ContactAttractor>, 6>;
 class ContactPushes {
  public:
   /// @param start, succ, rollout, stop must outlive it; as for find_attractors()
-  ContactPushes(const Task& task, const Belief& start, SuccessorEngine& succ, Rollout& rollout,
-                const std::function<bool()>& stop);
+  /// @param mouth of the goal, or the goal: see goal_attractors.h
+  ContactPushes(const Task& task, const Belief& start, const Pose& mouth, SuccessorEngine& succ,
+                Rollout& rollout, const std::function<bool()>& stop);
 
   struct Pushed {
     ContactAttractor contact;  ///< with no via
@@ -40,7 +41,8 @@ class ContactPushes {
   [[nodiscard]] Belief spread_about(const Pose& place) const { return about(place, whole_); }
 
   /// From opposite each side of each shape: with the start's spread, then, for translations to
-  /// whose contacts no straight legs lead, with what is left when the others are settled.
+  /// whose contacts no straight legs lead, with what is left when the others are settled, and from
+  /// where a rim is, for those that a tilt puts off on the way to the goal's mouth.
   void against_faces(KnownContacts& known);
 
   /// From a place drawn near what can be touched.
@@ -57,6 +59,7 @@ class ContactPushes {
     Belief start;
     BeliefSummary seed;
     CoordinateMask settled = 0;  ///< coordinates that nothing is left of
+    int over_rim = -1;           ///< see PartBefore
   };
 
   [[nodiscard]] Belief about(const Pose& place, const Spread& from) const;
@@ -64,6 +67,8 @@ class ContactPushes {
   [[nodiscard]] CoordinateMask without_legs(const KnownContacts& known) const;
   [[nodiscard]] std::vector<Pushed> together(const Belief& belief,
                                              const std::vector<Primitive>& pushes);
+  [[nodiscard]] bool any_off(const KnownContacts& known) const;
+  void over_rims(KnownContacts& known);
   void against_faces(const Spread& from, KnownContacts& known);
   [[nodiscard]] Belief opposite(const TouchPlace& side, const Primitive& push,
                                 const Eigen::AlignedBox3d& part, const Spread& from) const;
@@ -78,6 +83,7 @@ class ContactPushes {
   const Task& task_;
   std::vector<Primitive> primitives_;
   Spread whole_;
+  Pose mouth_;
   SuccessorEngine& succ_;
   Rollout& rollout_;
   const std::function<bool()>& stop_;

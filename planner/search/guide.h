@@ -24,6 +24,7 @@ struct ContactAttractor {
   CoordinateMask after = 0;  ///< what contacts before it must have settled
   bool in_legs = true;       ///< some straight legs lead from the start to there
   CoordinateMask flat = 0;   ///< rotations that the push settles besides
+  double tilt_off_m = 0.0;   ///< see tilt_offset.h
   /// Held as it is met, see Primitive, by who follows the guide to the letter: pressed, the part
   /// slides or rolls off. The search's own moves press.
   bool plain = false;

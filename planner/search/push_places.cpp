@@ -19,8 +19,10 @@ Pose place_before(const TouchPlace& side, const PartBefore& before, const Task& 
     if (!has(task.coordinates, axis)) continue;
     const double half_m = 0.5 * before.part.sizes()[axis];
     const double to_end_m = std::max(0.0, half_m - before.start.spread[axis] - kOffFace_m);
-    place.position_m[axis] = side.at_m[axis] - before.part.center()[axis] -
-                             ends[static_cast<std::size_t>(axis)] * to_end_m;
+    const int end = ends[static_cast<std::size_t>(axis)];
+    double at_m = side.at_m[axis];
+    if (axis == before.over_rim) at_m = end < 0 ? side.side_m.max()[axis] : side.side_m.min()[axis];
+    place.position_m[axis] = at_m - before.part.center()[axis] - end * to_end_m;
   }
   const double off_m =
       0.5 * before.part.sizes()[before.axis] + before.start.spread[before.axis] + kOffFace_m;
@@ -37,6 +39,7 @@ std::vector<Pose> places_before(const TouchPlace& side, const PartBefore& before
     auto& of_axis = ends[static_cast<std::size_t>(axis)];
     of_axis = {0};
     if (axis != before.axis && has(task.coordinates, axis)) of_axis = {0, -1, 1};
+    if (axis == before.over_rim) of_axis = {-1, 1};
   }
   std::vector<Pose> places;
   for (const int x : ends[0]) {

@@ -16,6 +16,7 @@ struct PartBefore {
   const BeliefSummary& start;  ///< whose spread the part keeps
   int axis = 0;                ///< 0..2
   int sign = 1;
+  int over_rim = -1;  ///< along this axis one of its ends is over the side's rim, and no more of it
 };
 
 /// The tool's poses off a side from which all of the spread would meet it: with the part's middle

@@ -214,6 +214,17 @@ class Patches {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> edges_;
 };
 
+Eigen::AlignedBox3d box_around(const Flat& low, const Flat& high, int axis, double along_m) {
+  const int u = (axis + 1) % 3;
+  const int v = (axis + 2) % 3;
+  Eigen::AlignedBox3d box{Vector3::Constant(along_m), Vector3::Constant(along_m)};
+  box.min()[u] = low[0];
+  box.max()[u] = high[0];
+  box.min()[v] = low[1];
+  box.max()[v] = high[1];
+  return box;
+}
+
 /// On a patch; where its rim is far, or far enough and near another place.
 TouchPlace place_on(const Patch& patch, int axis, double enough_m, const Vector3& near_m) {
   const int u = (axis + 1) % 3;
@@ -231,6 +242,7 @@ TouchPlace place_on(const Patch& patch, int axis, double enough_m, const Vector3
   TouchPlace best;
   best.area_m2 = patch.area_m2;
   best.to_rim_m = -1.0;
+  best.side_m = box_around(low, high, axis, patch.along_m);
   double best_off_m = 0.0;
   const auto look_at = [&](const Flat& p) {
     if (std::none_of(patch.triangles.begin(), patch.triangles.end(),
@@ -269,6 +281,9 @@ TouchPlace side_of(const Shape& shape, int axis, int sign) {
   TouchPlace side;
   side.at_m = shape.pose.position_m;
   side.at_m[axis] -= sign * half_m[axis];
+  Vector3 across_m = half_m;
+  across_m[axis] = 0.0;
+  side.side_m = {side.at_m - across_m, side.at_m + across_m};
   const double u_m = half_m[(axis + 1) % 3];
   const double v_m = half_m[(axis + 2) % 3];
   side.area_m2 = 4.0 * u_m * v_m;

@@ -1,6 +1,7 @@
 #pragma once
 // Where a shape can be pushed against: geometry alone, nothing simulates. Pure; any thread.
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "shared/task/task.h"
@@ -9,9 +10,10 @@ namespace tenon::planner {
 
 /// A flat side of a shape that faces against a push along an axis of the task.
 struct TouchPlace {
-  Vector3 at_m;           ///< on the side, task frame
-  double area_m2 = 0.0;   ///< of the side
-  double to_rim_m = 0.0;  ///< from there to where the side ends
+  Vector3 at_m;                ///< on the side, task frame
+  double area_m2 = 0.0;        ///< of the side
+  double to_rim_m = 0.0;       ///< from there to where the side ends
+  Eigen::AlignedBox3d side_m;  ///< around the side, task frame
 };
 
 /// A side of a box or a cylinder as far as its corners reach; of a solid its largest flat

@@ -49,6 +49,8 @@ TEST(TouchPlaces, ABoxIsPushedAgainstTheMiddleOfItsSide) {
   EXPECT_TRUE(places[0].at_m.isApprox(Vector3(0.1, 0.2, 0.33)));
   EXPECT_NEAR(places[0].area_m2, 8e-4, 1e-12);
   EXPECT_NEAR(places[0].to_rim_m, 0.01, 1e-12);
+  EXPECT_TRUE(places[0].side_m.min().isApprox(Vector3(0.09, 0.18, 0.33)));
+  EXPECT_TRUE(places[0].side_m.max().isApprox(Vector3(0.11, 0.22, 0.33)));
 }
 
 TEST(TouchPlaces, TheTopOfAUIsTouchedWhereItIsBroadest) {
@@ -62,6 +64,8 @@ TEST(TouchPlaces, TheTopOfAUIsTouchedWhereItIsBroadest) {
   const double rim_m = to_profile_m(kU, {at_m.x() - 0.5, at_m.y()});
   EXPECT_NEAR(rim_m, places[0].to_rim_m, 1e-4);
   EXPECT_GT(rim_m, 0.011);
+  EXPECT_TRUE(places[0].side_m.min().isApprox(Vector3(0.47, -0.02, 0.115), 1e-9));
+  EXPECT_TRUE(places[0].side_m.max().isApprox(Vector3(0.53, 0.02, 0.115), 1e-9));
 }
 
 TEST(TouchPlaces, WhereTheRimIsFarEnoughTheNearestPlaceIsTaken) {

@@ -261,6 +261,7 @@ TEST(PlannedPeg, HoldsWhereTheSlotIsTurnedByAThousandth) {
 // The block with the hole is small: from the start no push brings the particles together.
 TEST(SampledAttractors, LeadToFacesThatPushesFromTheStartMiss) {
   Task task = task_of("peg_in_hole_3d.yaml");
+  task.guide_moves = false;
   const Start& start = task.starts.front();
   const Belief belief = cross_polytope(task, start);
   RolloutPool pool(sim::OdeRollout(task), 2);
@@ -276,6 +277,29 @@ TEST(SampledAttractors, LeadToFacesThatPushesFromTheStartMiss) {
   };
   EXPECT_TRUE(axes_of_guides(0).empty());
   EXPECT_EQ(axes_of_guides(60).size(), 3U);
+}
+
+// Whether the block's sides are touched near the mouth, 0.12 m high, or as deep as the part is long
+// makes no difference where nothing is tilted, and 0.3 mm where all may be by 3 mrad.
+TEST(TiltedFaces, AreTouchedNearTheMouth) {
+  Task task = task_of("peg_in_hole_3d.yaml#clearance_0.5mm");
+  const Start& start = task.starts.front();
+  const Belief belief = cross_polytope(task, start);
+  RolloutPool pool(sim::OdeRollout(task), 2);
+  const MoveParameters move = long_move(task, search_move(task, start, {}));
+  const auto deepest_m = [&](double tilt_rad) {
+    task.tilt_rad = tilt_rad;
+    SuccessorEngine succ(pool, move, task.rollout_step_us);
+    const auto found = find_attractors(task, belief, succ, pool.front());
+    double least_m = 1.0;
+    for (const ContactAttractor& contact : found.candidates.at(0).contacts) {
+      least_m = std::min(least_m, contact.mean.position_m.z());
+    }
+    return 0.12 - least_m;
+  };
+  ASSERT_EQ(task.tilt_rad, 3e-3);
+  EXPECT_LT(deepest_m(3e-3), 0.010);
+  EXPECT_GT(deepest_m(0.0), 0.050);
 }
 
 }  // namespace
