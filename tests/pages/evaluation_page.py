@@ -16,6 +16,7 @@ import tempfile
 from browser import Browser, run_test
 from on_paper import print_page
 from plan_page import BYTES_MAX, ROOT, SMALL, look_at, press
+from rise import fall_back, stay_put, tick_by_key
 
 # Worlds in which some runs of a plan fail, in several ways, and those in which none begins.
 EXPERIMENTS = {"harsh": "name: harsh\nfriction: [0.1, 0.6]\nforce_drift_N_sqrts: [0.0, 1.2]\n",
@@ -158,8 +159,11 @@ def main(failures):
                 left = lit(browser)
                 failures.check(webgl or left < before, f"{page.stem}: a filter leaves {left} of {before}")
                 replay(browser, f"{page.stem} {webgl}", results, failures)
+                stay_put(browser, page, failures, webgl)
                 if webgl:
+                    fall_back(browser, page, failures)
                     continue  # words and numbers are the same
+                tick_by_key(browser, page, failures)
                 browser.open(made[2][0])
                 browser.wait_for(f"{ROOT}.ready === 'true'")
                 choose(browser, f"two {webgl}", made[2][1], failures)

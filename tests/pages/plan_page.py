@@ -9,16 +9,17 @@ import argparse
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 
 from browser import Browser, run_test
 from looked_at import LookedAt
 from on_paper import print_page
+from rise import ROOT, fall_back, keep_view, rise, scroll_over_the_scene, stay_put, tick_by_key
 
 BYTES_MAX = 3_000_000
 SMALL = 700  # px; what plays is drawn many times, by software where no graphics card is
-ROOT = "document.documentElement.dataset"
 # What covers a part of the picture that one looks at.
 OVER_THE_SCENE = """(() => { const scene = document.querySelector('.canvas').getBoundingClientRect();
   return [...document.querySelectorAll('.stage button, .stage input, .stage p')].filter(e => {
@@ -72,10 +73,10 @@ def look_at(browser, file, fragment, webgl, failures, pictures, served=None):
             shown = browser.evaluate("[...document.querySelectorAll('.canvas > *')].filter(e => e.getClientRects().length)"
                                      ".map(e => e.localName).join()")
             failures.check(shown == ("canvas" if webgl else "svg"), f"{name}: the scene is drawn by {shown}")
-            choices = browser.evaluate("document.querySelector('.views').textContent")
+            choices = browser.evaluate("document.querySelector('.views').innerText")
             failures.check(("In space" in choices) == webgl, f"{name}: offers the views {choices}")
-            boxes = browser.evaluate("[...document.querySelectorAll('.in-space')].map(e => e.getClientRects().length > 0)")
-            failures.check(all(box == webgl for box in boxes), f"{name}: the box that cuts the scene open is seen: {boxes}")
+            boxes = browser.evaluate("[...document.querySelectorAll('.in-space')].map(e => getComputedStyle(e).visibility === 'visible')")
+            failures.check(all(box == webgl for box in boxes), f"{name}: what a scene in space has is seen: {boxes}")
             over = browser.evaluate(OVER_THE_SCENE)
             failures.check(not over, f"{name}: over the scene stand {over}")
             for said in browser.said():
@@ -92,24 +93,6 @@ def look_at(browser, file, fragment, webgl, failures, pictures, served=None):
                 "[...document.querySelectorAll('.now h2, .words p')].filter(e => { e.append(' ' + 'name'.repeat(20));"
                 " return e.scrollWidth > e.clientWidth; }).map(e => e.textContent)")
             failures.check(not cut, f"{name}: a long name is cut off in {cut}")
-
-
-def rise(browser):
-    """Until the scene stands in space: the page is flat, and can be used, before."""
-    browser.wait_for("document.querySelector('.canvas').dataset.renderer === 'webgl'")
-
-
-def keep_view(browser, file, failures):
-    """A view chosen while the page is still flat stays the chosen one in space."""
-    browser.open(file)
-    browser.wait_for(f"{ROOT}.ready === 'true'")
-    flat = browser.evaluate("(() => { const picture = document.querySelector('.canvas'); const first ="
-                            " document.querySelector('.views button'); first.click();"
-                            " return picture.dataset.renderer + ' ' + first.textContent; })()")
-    rise(browser)
-    pressed = browser.evaluate("document.querySelector('.views [aria-pressed=true]').textContent")
-    failures.check(flat == f"svg {pressed}", f"{file.stem}: '{flat}' was chosen, in space it is '{pressed}'")
-    failures.check(not browser.said(), f"{file.stem}: says something while it rises")
 
 
 # The time of the first frame of a page that can be used, by its own clock.
@@ -156,6 +139,26 @@ def play(browser, file, failures):
         found = browser.evaluate(f"{ROOT}.step")
         failures.check(found == step, f"{name}: key {key} leads to step {found}, not {step}")
     failures.check(not browser.said(), f"{name}: says something while it plays")
+
+
+def show_the_spread(browser, file, failures):
+    """The flat scene has a whisker of two standard deviations each way along each axis; none is told to be zero."""
+    browser.open(file)
+    browser.wait_for(f"{ROOT}.ready === 'true'")
+    spread = json.loads(browser.evaluate(f"{ROOT}.spread"))
+    data = json.loads(browser.evaluate("document.getElementById('page-data').textContent"))
+    view = data["views"][0]
+    lengths = browser.evaluate("[...document.querySelectorAll('.canvas .whisker')].map(e => e.getTotalLength())")
+    wanted = [4e3 * spread[axis] for axis in (view["right"], view["up"])]
+    failures.check(len(lengths) == len(wanted) and all(abs(a - b) < 0.05 for a, b in zip(lengths, wanted)),
+                   f"{file.stem}: whiskers of {lengths} mm, by the spread {wanted}")
+    press(browser, "End")
+    told = browser.evaluate("[...document.querySelectorAll('.uncertainty .value, .bar b, .uncertainty title')]"
+                            ".map(e => e.textContent)")
+    least = 1e3 * min(data["nodes"][-1]["spread"][axis] for axis in data["coordinates"])
+    zeros = [text for text in told if re.search(r"(^|\s)0(\.0+)?( mm|°)", text)]
+    failures.check(told and not zeros, f"{file.stem}: on a logarithmic scale stand {zeros}")
+    failures.check(any(f"{least:.2g} mm" in text for text in told), f"{file.stem}: {least} mm is not among {told}")
 
 
 def tell_the_search(browser, file, statistics, failures):
@@ -210,9 +213,13 @@ def main(failures):
                           f" {'WebGL' if webgl else 'SVG'}")
                     look_at(browser, file, "#step=1.5", webgl, failures, arguments.pictures)
                 play(browser, files[0], failures)
+                stay_put(browser, files[0], failures, webgl)
                 if webgl:
-                    keep_view(browser, files[0], failures)
+                    for test in (keep_view, fall_back, scroll_over_the_scene):
+                        test(browser, files[0], failures)
                     continue  # words and numbers are the same
+                tick_by_key(browser, files[0], failures)
+                show_the_spread(browser, files[0], failures)
                 for file in files:
                     text = print_page(browser, file, failures, arguments.pictures)
                     failures.check("\n0\t" in text, f"{file.stem}: the moves have no numbers in print")

@@ -6,6 +6,7 @@ class UncertaintyChart {
     this.data = data;
     this.jump = jump;
     this.time = 0;
+    this.build();
     new ResizeObserver(() => this.build()).observe(host);
   }
 
@@ -14,14 +15,14 @@ class UncertaintyChart {
     const rows = coordinates.map((axis) => ({
       label: AXES[axis],
       values: nodes.map((node) => node.spread[axis]),
-      text: (value) => amount(value, axis),
+      text: (value) => smallAmount(value, axis),
       axis,
     }));
     if (coordinates.length > 1) {
       rows.push({
         label: "all",
         values: nodes.map((node) => node.uncertainty_m),
-        text: (value) => amount(value, 0),
+        text: (value) => smallAmount(value, 0),
         wanted: this.data.goal_uncertainty_m,
       });
     }
@@ -30,8 +31,9 @@ class UncertaintyChart {
 
   build() {
     const width = Math.max(this.host.clientWidth, 280);
+    if (this.data.nodes.length === 0 || width === this.width) return;
+    this.width = width;
     const rows = this.rows();
-    if (this.data.nodes.length === 0) return;
     const height = 62;
     const left = 44;
     const right = 76;

@@ -162,7 +162,7 @@ class PlanPage {
       const first = Math.max(...this.data.nodes.map((node) => node.spread[bar.axis]), 1e-9);
       const share = Math.max(0, 1 + Math.log10(Math.max(value, 1e-12) / first) / 3);
       bar.fill.style.width = (100 * share).toFixed(1) + "%";
-      bar.value.textContent = amount(value, bar.axis);
+      bar.value.textContent = smallAmount(value, bar.axis);
       bar.row.classList.toggle(
         "gaining",
         gains.some((gain) => gain.axis === bar.axis),

@@ -74,10 +74,17 @@ class Player {
     );
   }
 
+  // Whether the key is for the element that has the focus. The player's own slider goes from step to step as the page
+  // does.
+  belongs(key, target) {
+    const { tagName, type } = target;
+    if (target === this.range) return false;
+    if (["SELECT", "TEXTAREA"].includes(tagName) || (tagName === "INPUT" && type !== "checkbox")) return true;
+    return key === " " && ["BUTTON", "SUMMARY", "INPUT"].includes(tagName);
+  }
+
   onKey(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (["SELECT", "TEXTAREA"].includes(event.target.tagName)) return;
-    const onButton = event.target.tagName === "BUTTON" || event.target.tagName === "SUMMARY";
     const actions = {
       " ": () => this.toggle(),
       ArrowLeft: () => this.step(-1),
@@ -85,7 +92,7 @@ class Player {
       Home: () => this.jump(0),
       End: () => this.jump(this.end),
     };
-    if (!(event.key in actions) || (event.key === " " && onButton)) return;
+    if (!(event.key in actions) || this.belongs(event.key, event.target)) return;
     event.preventDefault();
     actions[event.key]();
   }

@@ -39,7 +39,7 @@ async function calm() {
   const frame = () => new Promise(requestAnimationFrame);
   const start = await frame();
   let last = start;
-  for (let inTime = 0; inTime < CALM_FRAMES && last - start < CALM_MOST_MS; ) {
+  for (let inTime = 0; inTime < CALM_FRAMES && last - start < CALM_MOST_MS;) {
     const now = await frame();
     inTime = now - last < CALM_FRAME_MS ? inTime + 1 : 0;
     last = now;
@@ -47,41 +47,53 @@ async function calm() {
 }
 
 class ScenePicture {
-  // @param rising: called when the picture stands in space, and has a view more
-  constructor(host, data, rising) {
+  // @param turned: called when the picture has come to stand in space, or is flat again
+  constructor(host, data, turned) {
     this.host = host;
     this.data = data;
-    this.rising = rising;
+    this.turned = turned;
     this.bounds = boundsOf(data);
-    this.scene = new SvgScene(host, data, this.bounds, colours());
-    host.dataset.renderer = "svg";
+    this.views = [...data.views, SPACE];
+    this.view = data.views[0];
     this.space = false;
-    this.views = data.views;
-    this.view = this.views[0];
+    this.stand(new SvgScene(host, data, this.bounds, colours()));
     onColours((palette) => this.scene.recolour(palette));
+    new ResizeObserver(() => this.resize()).observe(host);
     this.rise();
+  }
+
+  stand(scene) {
+    this.scene?.dispose();
+    this.scene = scene;
+    this.space = scene instanceof GlScene;
+    this.host.dataset.renderer = this.space ? "webgl" : "svg";
   }
 
   async rise() {
     await calm();
     const inSpace = await GlScene.readyWithin(this.host, this.data, this.bounds, colours());
     if (!inSpace) return;
-    this.scene.dispose();
-    this.scene = inSpace;
-    this.space = true;
-    this.host.dataset.renderer = "webgl";
-    this.views = [SPACE, ...this.data.views];
-    inSpace.show();
+    this.stand(inSpace);
+    inSpace.show(() => this.fall());
     inSpace.recolour(colours());
     this.setView(this.chosen ? this.view : SPACE);
     if (this.last) inSpace.draw(...this.last);
-    new ResizeObserver(() => this.resize()).observe(this.host);
     this.resize();
-    this.rising();
+    this.turned();
+  }
+
+  // Flat again: a browser may take the context away at any time.
+  fall() {
+    this.stand(new SvgScene(this.host, this.data, this.bounds, colours()));
+    this.setView(this.view === SPACE ? this.data.views[0] : this.view);
+    if (this.last) this.scene.draw(...this.last);
+    this.turned();
   }
 
   resize() {
-    if (this.host.clientWidth) this.scene.resize(this.host.clientWidth, this.host.clientHeight);
+    if (this.space && this.host.clientWidth) {
+      this.scene.resize(this.host.clientWidth, this.host.clientHeight);
+    }
   }
 
   choose(view) {

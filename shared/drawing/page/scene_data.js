@@ -42,6 +42,14 @@ function amount(value, axis) {
   return fixed(number, digits) + (axis < 3 ? " mm" : "°");
 }
 
+// Of what is drawn on a logarithmic scale: two digits that count however small it is.
+function smallAmount(value, axis) {
+  const number = shown(value, axis);
+  if (number >= 0.1) return amount(value, axis);
+  const text = number < 1e-4 ? "< 0.0001" : String(Number(number.toPrecision(2)));
+  return text + (axis < 3 ? " mm" : "°");
+}
+
 // The longest duration of each move over all chains: who is faster rests until the last has ended.
 function moveDurations(chains, count) {
   const durations = new Array(count).fill(0);

@@ -12,15 +12,18 @@ class GlScene {
     const context = canvas.getContext("webgl2", { antialias: true, alpha: true });
     if (!context) return null;
     host.append(canvas);
+    let made = null;
     try {
-      const made = new GlScene(canvas, context, data, bounds, palette);
+      made = new GlScene(canvas, context, data, bounds, palette);
       made.renderer.compile(made.scene, made.camera);
       await calm();
-      return made;
+      if (made.works()) return made;
     } catch {
-      canvas.remove();
-      return null;
+      // As where it works no better.
     }
+    made?.dispose();
+    canvas.remove();
+    return null;
   }
 
   constructor(canvas, context, data, bounds, palette) {
@@ -28,7 +31,11 @@ class GlScene {
     this.data = data;
     this.bounds = bounds;
     this.canvas = canvas;
+    this.context = context;
+    // Before the renderer's own listener, which would write to the console.
+    canvas.addEventListener("webglcontextlost", (event) => this.lose(event));
     this.renderer = new T.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
+    this.renderer.debug.checkShaderErrors = false; // works() does
     this.renderer.localClippingEnabled = true;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.scene = new T.Scene();
@@ -38,6 +45,8 @@ class GlScene {
     this.camera.up.set(0, 0, 1);
     this.controls = new T.OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener("change", () => this.render());
+    // Controls forbid all of it: a finger that goes aside turns the scene, one that goes up scrolls the page.
+    canvas.style.touchAction = "pan-y";
     const ambient = new T.HemisphereLight(0xffffff, 0x8a8f99, 2.2);
     ambient.position.set(0, 0, 1);
     const sun = new T.DirectionalLight(0xffffff, 1.4);
@@ -75,33 +84,7 @@ class GlScene {
   build() {
     const T = TenonLibraries;
     const { environment, held } = this.data.scene;
-    const faces = (options) =>
-      new T.MeshLambertMaterial({
-        side: T.DoubleSide,
-        polygonOffset: true,
-        polygonOffsetFactor: 1,
-        polygonOffsetUnits: 1,
-        ...options,
-      });
-    const lines = (options) => new T.LineBasicMaterial({ transparent: true, ...options });
-    this.materials = {
-      environment: faces({}),
-      touched: faces({}),
-      environmentEdges: lines({ opacity: 0.35 }),
-      // Behind whatever really stands in the same plane.
-      nominal: faces({ transparent: true, opacity: 0.1, depthWrite: false, polygonOffsetFactor: 4 }),
-      nominalEdges: lines({ opacity: 0.4 }),
-      front: faces({}),
-      frontEdges: lines({ opacity: 0.9 }),
-      particle: faces({ transparent: true, opacity: 0.08, depthWrite: false }),
-      particleEdges: lines({ opacity: 0.3 }),
-      goal: lines({ opacity: 0.9 }),
-      path: lines({ opacity: 0.85 }),
-      whisker: lines({ opacity: 1, depthTest: false }),
-      draws: new T.PointsMaterial({ size: 3, sizeAttenuation: false, transparent: true, opacity: 0.4 }),
-      tips: new T.PointsMaterial({ size: 7, sizeAttenuation: false, depthTest: false, transparent: true }),
-      arrow: new T.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.9 }),
-    };
+    this.materials = sceneMaterials();
     const m = this.materials;
     this.environment = this.bodyOf(environment, m.environment, m.environmentEdges);
     this.nominal = this.bodyOf(this.data.nominal ? environment : [], m.nominal, m.nominalEdges);
@@ -358,8 +341,29 @@ class GlScene {
     if (this.painted) this.paint();
   }
 
-  show() {
+  // @param lost: called when the browser takes the context away
+  show(lost) {
+    this.lost = lost;
     this.canvas.hidden = false;
+  }
+
+  lose(event) {
+    event.stopImmediatePropagation();
+    this.lost?.();
+  }
+
+  // Whether every program so far links: where one does not, what it draws is missing.
+  works() {
+    const { context } = this;
+    const links = ({ program }) => context.getProgramParameter(program, context.LINK_STATUS);
+    return !context.isContextLost() && this.renderer.info.programs.every(links);
+  }
+
+  dispose() {
+    cancelAnimationFrame(this.asked);
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.canvas.remove();
   }
 
   // Once a frame, however much has changed: building a scene changes most of it several times over.
@@ -371,6 +375,6 @@ class GlScene {
     cancelAnimationFrame(this.asked);
     this.asked = 0;
     this.painted = true;
-    if (this.width) this.renderer.render(this.scene, this.camera);
+    if (this.width && !this.context.isContextLost()) this.renderer.render(this.scene, this.camera);
   }
 }

@@ -44,10 +44,6 @@ class SvgScene {
     return path;
   }
 
-  dispose() {
-    this.svg.remove();
-  }
-
   recolour(palette) {
     this.palette = palette;
     this.build();
@@ -158,7 +154,7 @@ class SvgScene {
       });
     }
     for (const pose of state.particles) elements.push(this.dot(pose, 0.006, { fill: colour.particle }));
-    elements.push(...this.arrowOf(state));
+    elements.push(...this.whiskersOf(state), ...this.arrowOf(state));
     for (const flash of state.flashes) {
       const ring = {
         fill: "none",
@@ -209,6 +205,17 @@ class SvgScene {
       ];
     });
     this.trails.replaceChildren(...drawn);
+  }
+
+  // Two standard deviations each way along the axes that are seen.
+  whiskersOf({ mean, spread }) {
+    if (!spread) return [];
+    const end = (axis, sigmas) =>
+      mean.map((value, i) => (i === axis ? value + sigmas * spread[axis] : value));
+    const style = { stroke: this.palette.ink, "stroke-width": 0.003 * this.size, class: "whisker" };
+    return [this.view.right, this.view.up]
+      .filter((axis) => spread[axis] > 0)
+      .map((axis) => this.line([end(axis, -2), end(axis, 2)], style));
   }
 
   arrowOf(state) {

@@ -30,7 +30,7 @@ function optionBox(options, name, colour, text, changed) {
   );
 }
 
-// Only a scene in space is cut open.
+// Only a scene in space is cut open. Its room is kept while there is none.
 function cutBox(options, changed) {
   const box = optionBox(options, "cut", "environment", "cut open", changed);
   box.classList.add("in-space");
@@ -57,27 +57,28 @@ class Stage {
     this.views = element("div", { class: "views", role: "group", "aria-label": "Views" });
     this.now = element("aside", { class: "now", "aria-label": "What happens now" });
     host.append(element("div", { class: "picture" }, this.views, canvas, ...controls, legend), this.now);
-    this.picture = new ScenePicture(canvas, data, () => this.listViews());
-    this.listViews();
-  }
-
-  listViews() {
-    this.views.replaceChildren(
-      ...this.picture.views.map((view) => {
-        const button = element("button", { type: "button" }, view.title);
-        button.addEventListener("click", () => {
-          this.picture.choose(view);
-          this.markView();
-        });
-        return button;
-      }),
-    );
+    this.picture = new ScenePicture(canvas, data, () => this.markView());
+    this.views.append(...this.picture.views.map((view) => this.viewButton(view)));
     this.markView();
   }
 
+  viewButton(view) {
+    const button = element("button", { type: "button" }, view.title);
+    button.classList.toggle("in-space", view === SPACE);
+    button.addEventListener("click", () => {
+      this.picture.choose(view);
+      this.markView();
+    });
+    return button;
+  }
+
+  // A button that goes hands its focus on to the view that is shown instead.
   markView() {
+    const { space, views, view } = this.picture;
+    const left = !space && document.activeElement?.matches(".views .in-space");
     [...this.views.children].forEach((button, i) => {
-      button.setAttribute("aria-pressed", this.picture.views[i] === this.picture.view);
+      button.setAttribute("aria-pressed", views[i] === view);
+      if (left && views[i] === view) button.focus();
     });
   }
 
