@@ -41,11 +41,7 @@ std::string envelope_text(const Plan& plan, const OutcomeRule& rule) {
                    shown(rule.envelope.travelled_min[axis], axis),
                    shown(rule.envelope.travelled_max[axis], axis));
   }
-  text += "; contacts " + to_string(rule.envelope.always);
-  if (rule.envelope.possible != rule.envelope.always) {
-    text += " (possible " + to_string(rule.envelope.possible) + ")";
-  }
-  return text;
+  return text + "; contacts " + contacts_text(rule.envelope);
 }
 
 /// The cells that stand once a step, whichever outcomes it may have.

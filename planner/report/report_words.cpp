@@ -20,6 +20,13 @@ std::string amount(double value, int axis) {
   return format(told < 0.01 ? "%.4f\u00b0" : "%.2f\u00b0", told);
 }
 
+std::string contacts_text(const Envelope& envelope) {
+  const ContactSignature sometimes{
+      static_cast<std::uint16_t>(envelope.possible.bits & ~envelope.always.bits)};
+  const std::string always = to_string(envelope.always);
+  return sometimes.count() > 0 ? always + ", possible " + to_string(sometimes) : always;
+}
+
 std::string spread_text(const Plan& plan, const Vector6& spread) {
   std::string text;
   for (int axis = 0; axis < 6; ++axis) {

@@ -18,6 +18,9 @@ inline constexpr double kCollapsed = 0.2;
 /// "1.2 mm" or degrees, of m or rad; with two digits more where little is left.
 [[nodiscard]] std::string amount(double value, int axis);
 
+/// The contacts that every run had, and those that only some had: "+z, possible -x".
+[[nodiscard]] std::string contacts_text(const Envelope& envelope);
+
 /// The coordinates of the plan, each with an amount.
 [[nodiscard]] std::string spread_text(const Plan& plan, const Vector6& spread);
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "planner/judge/refutation.h"
+#include "planner/report/report_words.h"
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/base/wilson.h"
@@ -35,11 +36,7 @@ std::string envelope_text(const Plan& plan, const Envelope& envelope) {
     text += format(" %s [%.1f, %.1f]", axis_name(axis), shown(envelope.travelled_min[axis], axis),
                    shown(envelope.travelled_max[axis], axis));
   }
-  text += "  contacts " + to_string(envelope.always);
-  const ContactSignature sometimes{
-      static_cast<std::uint16_t>(envelope.possible.bits & ~envelope.always.bits)};
-  if (sometimes.count() > 0) text += ", perhaps " + to_string(sometimes);
-  return text;
+  return text + "  contacts " + contacts_text(envelope);
 }
 
 /// A line for each outcome that leads on; without envelopes, one for all that lead to one step.

@@ -21,6 +21,7 @@ from browser import Browser, run_test
 from looked_at import LookedAt
 from on_paper import print_page
 from plan_page import BYTES_MAX, ROOT, SMALL, look_at, press
+from rise import fall_back, stay_put, tick_by_key
 
 PLAN = "box_4_gantry3"
 HEADING_BYTES = 28
@@ -196,6 +197,46 @@ def tell(browser, pages, failures):
                    "fault: its button does not lead to it")
 
 
+def tell_contacts(arguments, browser, page, failures):
+    """The page says of a step's contacts what the text says."""
+    text = subprocess.run([arguments.inspect, f"{arguments.plans}/{PLAN}.tnp"], check=True, capture_output=True,
+                          text=True).stdout
+    contacts = lambda words: re.findall(r"contacts ([^\n\t]*?)\s*(?:->|\t|\n)", words)
+    in_text = contacts(text)
+    browser.open(page)
+    shown = browser.evaluate("[...document.querySelectorAll('.moves td')].map(e => e.textContent)"
+                             ".filter(t => t.includes('; contacts ')).map(t => t.split('; contacts ')[1])")
+    failures.check(in_text == shown and any("possible" in words for words in shown),
+                   f"{page.stem}: contacts {shown}, in the text {in_text}")
+
+
+def tell_what_lacks(browser, page, failures):
+    """A dash in place of a value says what the executor did instead."""
+    for end, wanted in (("End", "the run had ended"), ("Home", "the executor was waiting")):
+        browser.open(page)
+        browser.wait_for(f"{ROOT}.ready === 'true'")
+        press(browser, end)
+        dashes = browser.evaluate("[...document.querySelectorAll('.curves-key b')].filter(b => b.textContent === '–')"
+                                  ".map(b => [b.parentElement.textContent, b.title])")
+        failures.check(dashes and all(wanted in title for _, title in dashes), f"{page.stem}: by {end} lack {dashes}")
+        failures.check(f"not commanded: {wanted}" in [title for _, title in dashes], f"{page.stem}: by {end} {dashes}")
+
+
+def open_at(browser, page, failures):
+    """#step=1.5 opens in the middle of step 1 as it ran; a step that never ran is the end."""
+    spans = {}
+    for fragment, step in (("#step=1.5", 1), ("#step=2", 2), ("#step=6", None)):
+        browser.open(page, fragment=fragment)
+        browser.wait_for(f"{ROOT}.ready === 'true'")
+        run = data_of(browser)["run"]
+        spans = {span["step"]: span for span in run["spans"]}
+        place = float(fragment[6:]) % 1
+        wanted = run["duration_s"] if step is None else \
+            spans[step]["from_s"] + place * (spans[step]["to_s"] - spans[step]["from_s"])
+        at = float(browser.evaluate(f"{ROOT}.time"))
+        failures.check(abs(at - wanted) < 5e-3, f"{page.stem}{fragment}: opens at {at} s, not {wanted}")
+
+
 # How many pixels of a curve's canvas are dark enough for paper.
 INK = """[...document.querySelectorAll('.plot canvas')].map(canvas => {
   if (!canvas.getBoundingClientRect().width) return 0;
@@ -273,12 +314,19 @@ def main(failures):
                     look_at(browser, pages[name], "", webgl, failures, arguments.pictures)
                     print(f"{name}: looked at in {time.monotonic() - began:.1f} s")
                 use(browser, pages["box"], failures)
+                stay_put(browser, pages["box"], failures, webgl)
                 if webgl:
+                    fall_back(browser, pages["box"], failures)
                     continue  # words and numbers are the same, and there every page takes seconds to be drawn
                 hold_against_the_log(browser, pages["box"], Oracle(folder / "box.lcmlog"), failures)
                 for name in ("box", "fault"):
                     hold_against_the_result(browser, pages[name], folder / f"{name}.json", failures)
                 tell(browser, pages, failures)
+                tell_contacts(arguments, browser, pages["box"], failures)
+                tick_by_key(browser, pages["box"], failures)
+                for name in ("box", "fault"):
+                    tell_what_lacks(browser, pages[name], failures)
+                open_at(browser, pages["fault"], failures)
                 print_pages(browser, pages, failures, arguments.pictures)
         looked_at.now(failures)
     return f"{len(pages)} pages"

@@ -12,6 +12,11 @@ function momentAt(times, time) {
   return low;
 }
 
+// The name of the state that has begun last, of {from_s, name}.
+function stateNameAt(states, time) {
+  return states.findLast((state) => state.from_s <= time + 1e-9)?.name;
+}
+
 class Replay {
   constructor(recording, steps) {
     this.recording = recording;

@@ -29,7 +29,13 @@ class RunCurves {
     this.curves = data.run.curves;
     const timed = this.run.faults.filter((fault) => fault.time_s !== undefined);
     const end = this.curves.times_s[this.curves.times_s.length - 1];
-    this.plots = new RunPlots(host, { spans: this.run.spans, faults: timed, end, jump });
+    this.plots = new RunPlots(host, {
+      spans: this.run.spans,
+      faults: timed,
+      end,
+      jump,
+      why: (time) => this.why(time),
+    });
     this.addWrench(0);
     this.addWrench(3);
     this.addMotion([0, 1, 2], "Tool's place in the task frame", "mm", 1e3, 1e-4);
@@ -41,6 +47,13 @@ class RunCurves {
 
   show(time) {
     this.plots.show(time);
+  }
+
+  // What the executor did where nothing is commanded, or measured.
+  why(time) {
+    const name = stateNameAt(this.run.states, time);
+    if (!name) return "";
+    return name === "finished" ? "the run had ended" : `the executor was ${name}`;
   }
 
   // Force or torque: its axes, its length, and what the plan and the cell say of it.
@@ -131,6 +144,7 @@ class RunCurves {
           colour: "ink",
           dash: [3, 3],
           width: 1,
+          missing: "not commanded",
         },
       ];
     });
@@ -141,7 +155,7 @@ class RunCurves {
       height: 220,
       series,
       times: times_s,
-      note: "Coloured: measured; dotted: commanded.",
+      note: "Coloured: measured; dotted: commanded, while the plan runs.",
       label: `${title} over time, measured and commanded, along ${moving.map((axis) => AXES[axis]).join(", ")}`,
     });
   }
@@ -197,6 +211,7 @@ class RunCurves {
           colour: "ink",
           dash: [3, 3],
           width: 1,
+          missing: "not commanded",
         },
       ],
       draw: (chart, context, ratio) => {
@@ -204,7 +219,7 @@ class RunCurves {
           horizontal(chart, context, ratio, { value: factor * value, colour: "bad", dash: [], width: 2 });
         }
       },
-      note: `It may be between ${limits[0]} and ${limits[1]} ${unit}.`,
+      note: `It may be between ${limits[0]} and ${limits[1]} ${unit}. It is commanded while the plan runs.`,
       label: `Joint ${joint.name} over time, measured and commanded`,
     };
   }
@@ -219,7 +234,14 @@ class RunCurves {
       digits: 3,
       height: 140,
       times: this.curves.times_s,
-      series: [{ name: "measured less commanded", values: times(factor, joint.off), colour: "curve-b" }],
+      series: [
+        {
+          name: "measured less commanded",
+          values: times(factor, joint.off),
+          colour: "curve-b",
+          missing: "not commanded",
+        },
+      ],
       label: `Joint ${joint.name}: measured less commanded over time, at most ${most} ${unit}`,
     };
   }

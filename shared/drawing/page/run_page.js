@@ -60,20 +60,22 @@ class RunPage {
     return this.run.spans.findLast((span) => span.from_s <= time + 1e-9);
   }
 
-  stateNameAt(time) {
-    return this.run.states.findLast((state) => state.from_s <= time + 1e-9)?.name;
-  }
-
   nameOf(time) {
     const span = this.spanAt(time);
     if (time >= this.end) return "end";
-    return `${time.toFixed(1)} s, ${span ? "step " + span.step : this.stateNameAt(time) || "begins"}`;
+    return `${time.toFixed(1)} s, ${span ? "step " + span.step : stateNameAt(this.run.states, time) || "begins"}`;
   }
 
   // When a step of the plan was over, or the run was.
   endOf(step) {
     if (step < 0) return 0;
     return this.run.spans.find((span) => span.step === step)?.to_s ?? this.end;
+  }
+
+  // When the run was at a place in moves of the plan; its end where it never came there.
+  timeOf(planTime) {
+    const span = this.run.spans.find((one) => one.step === Math.floor(planTime));
+    return span ? span.from_s + (planTime % 1) * (span.to_s - span.from_s) : this.end;
   }
 
   // In moves of the plan.
@@ -99,8 +101,9 @@ class RunPage {
   }
 
   begin() {
-    const asked = /time=([\d.]+)/.exec(location.hash);
-    this.player.jump(asked ? Number(asked[1]) : this.end);
+    const asked = (name) => new RegExp(`[#&]${name}=(\\d+(\\.\\d+)?)`).exec(location.hash)?.[1];
+    const [time, step] = [asked("time"), asked("step")];
+    this.player.jump(Number(time ?? (step ? this.timeOf(Number(step)) : this.end)));
     document.documentElement.dataset.ready = "true";
   }
 
@@ -182,7 +185,7 @@ class RunPage {
         row.classList.toggle("current", own && !ended);
       }
     }
-    const state = this.stateNameAt(time) || "";
+    const state = stateNameAt(this.run.states, time) || "";
     this.heading.textContent = ended
       ? this.endTitle()
       : span

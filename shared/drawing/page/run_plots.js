@@ -21,7 +21,8 @@ const OUTCOME_COLOURS = {
 
 // One plot with its heading and its legend.
 class Plot {
-  // series: {name, values, colour, dash, width, hidden, with}; `with` names another one that it goes on and off with.
+  // series: {name, values, colour, dash, width, hidden, with, missing}; `with` names another one that it goes on and off
+  // with, `missing` says what a moment without a value lacks.
   // draw: called with the plot between its grid and its curves; bare: without a grid.
   constructor(plots, { title, unit, digits, height, series, times, scale, range, draw, note, label, bare }) {
     Object.assign(this, { plots, unit, digits, height, series, times, draw, bare });
@@ -132,11 +133,13 @@ class Plot {
   }
 
   // What the curves are in the moment that holds the time.
-  show(index) {
+  // @param why: in words, what the executor did instead, where a value is missing
+  show(index, why) {
     this.series.forEach((one, i) => {
       const value = one.values[Math.min(index, one.values.length - 1)];
       const known = value !== null && value !== undefined;
       this.values[i].textContent = known ? `${fixed(value, this.digits)} ${this.unit}` : "–";
+      this.values[i].title = known || !why ? "" : `${one.missing ?? "not known"}: ${why}`;
     });
   }
 
@@ -172,9 +175,10 @@ function horizontal(chart, context, ratio, { value, from, to, colour, dash, widt
 
 // All plots of a run.
 class RunPlots {
-  // spans: steps in time; faults: those whose time is known; jump: called with a time in s.
-  constructor(host, { spans, faults, end, jump }) {
-    Object.assign(this, { spans, faults, end, jump });
+  // spans: steps in time; faults: those whose time is known; jump: called with a time in s; why: of a time, in words
+  // why nothing may be known.
+  constructor(host, { spans, faults, end, jump, why }) {
+    Object.assign(this, { spans, faults, end, jump, why });
     this.host = element("div");
     host.append(this.host);
     this.plots = [];
@@ -348,7 +352,7 @@ class RunPlots {
 
   show(time) {
     this.time = time;
-    for (const plot of this.plots) plot.show(momentAt(plot.times, time));
+    for (const plot of this.plots) plot.show(momentAt(plot.times, time), this.why(time));
     this.redrawSoon();
   }
 
