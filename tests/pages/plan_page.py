@@ -143,8 +143,13 @@ def play(browser, file, failures):
 
 def show_the_spread(browser, file, failures):
     """The flat scene has a whisker of two standard deviations each way along each axis; none is told to be zero."""
-    browser.open(file)
+    browser.open(file, fragment="#step=1.5")
     browser.wait_for(f"{ROOT}.ready === 'true'")
+    wide = browser.evaluate("[...document.querySelectorAll('.bar b')].filter(e => { const text = new Range();"
+                            " text.selectNodeContents(e); return text.getClientRects().length > 1"
+                            " || e.scrollWidth > e.clientWidth; }).map(e => e.textContent)")
+    failures.check(not wide, f"{file.stem}: {wide} has no room")
+    press(browser, "Home")
     spread = json.loads(browser.evaluate(f"{ROOT}.spread"))
     data = json.loads(browser.evaluate("document.getElementById('page-data').textContent"))
     view = data["views"][0]

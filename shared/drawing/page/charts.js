@@ -36,7 +36,7 @@ class UncertaintyChart {
     const rows = this.rows();
     const height = 62;
     const left = 44;
-    const right = 76;
+    const right = 92;
     const count = this.data.nodes.length - 1;
     this.x = (time) => left + ((width - left - right) * time) / Math.max(count, 1);
     const bottom = rows.length * height;
