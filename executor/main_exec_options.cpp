@@ -15,30 +15,33 @@ namespace {
 // What is run; the two are exclusive.
 void add_work(CLI::App& app, Options& options) {
   std::vector<CLI::Option*> of_a_plan = {
-      app.add_option("--plan", options.plan, "plan file (.tnp)"),
+      app.add_option("--plan", options.plan, "Plan file (.tnp)"),
       app.add_flag("--dry-run", options.dry_run,
-                   "only go through the plan with the cell's arm in mind; needs no --can"),
-      app.add_flag("--step", options.step, "wait for Enter before every step of the plan"),
-      app.add_flag("--keys", options.keys, "p and Enter pauses the move, r and Enter goes on"),
-      app.add_flag("--go-to-start", options.go_to_start, "move to the plan's start first"),
-      app.add_option("--trace", options.trace, "inputs of every guarded move, to replay")};
+                   "Only go through the plan with the cell's arm in mind; needs no --can"),
+      app.add_flag("--step", options.step, "Wait for Enter before every step of the plan"),
+      app.add_flag("--keys", options.keys,
+                   "While it runs, p and Enter pauses the move, r and Enter goes on"),
+      app.add_flag("--go-to-start", options.go_to_start, "Move to the plan's start first"),
+      app.add_option("--trace", options.trace, "Inputs of every guarded move, to replay")};
   app.add_option(
       "--can", options.can,
-      "socketcan:can0, slcan:/dev/ttyACM0 or slcan://HOST:PORT; arm=URI,sensor=URI where the "
+      "Bus: socketcan:can0, slcan:/dev/ttyACM0 or slcan://HOST:PORT; arm=URI,sensor=URI where the "
       "force/torque sensor has a bus of its own");
-  app.add_option("--rt", options.rt, "ask for real time, and start without it or not")
+  app.add_option("--rt", options.rt, "Ask for real time, and start without it or not")
       ->check(CLI::IsMember({"require", "prefer", "off"}))
       ->capture_default_str();
-  app.add_option("--cpu", options.cpu, "processor for the control loop")
+  app.add_option("--cpu", options.cpu, "Processor for the control loop")
       ->check(CLI::Range(0, 1023));
   CLI::Option* payload = app.add_flag("--identify-payload", options.identify_payload,
-                                      "instead of a plan: payload and sensor bias, in some poses");
-  CLI::Option* contact = app.add_option(
-      "--identify-contact", options.identify_contact,
-      "instead of a plan: stiffness and lag at what stands along x, -x, y, -y, z or -z");
+                                      "Instead of a plan: payload and sensor bias, in some poses");
+  CLI::Option* contact =
+      app.add_option("--identify-contact", options.identify_contact,
+                     "Instead of a plan: stiffness and lag at what stands along this way, in the "
+                     "task frame")
+          ->type_name("TEXT:{x,-x,y,-y,z,-z}");
   CLI::Option* friction = app.add_option(
       "--identify-friction", options.identify_friction,
-      "instead of a plan: friction of each joint, into the file that a cell's joint_torque names");
+      "Instead of a plan: friction of each joint, into the file that a cell's joint_torque names");
   contact->excludes(payload)->excludes(friction);
   payload->excludes(friction);
   for (CLI::Option* option : of_a_plan) {
@@ -47,13 +50,13 @@ void add_work(CLI::App& app, Options& options) {
 }
 
 void add_outputs(CLI::App& app, Options& options) {
-  app.add_option("--lcm-url", options.lcm_url, "where telemetry goes, or none")
+  app.add_option("--lcm-url", options.lcm_url, "Where telemetry goes, or none")
       ->capture_default_str();
   app.add_option("--log", options.log,
-                 "telemetry of every cycle, for tenon-monitor, tenon-inspect and lcm-logplayer");
-  app.add_option("--can-log", options.can_log, "frames in candump's format, FILE.log");
-  app.add_option("--json", options.json, "result, - for standard output");
-  app.add_option("--black-box", options.black_box, "the last second as CSV, after a fault")
+                 "Telemetry of every cycle, for tenon-monitor, tenon-inspect and lcm-logplayer");
+  app.add_option("--can-log", options.can_log, "Frames in candump's format, FILE.log");
+  app.add_option("--json", options.json, "Result, - for standard output");
+  app.add_option("--black-box", options.black_box, "The last second as CSV, after a fault")
       ->capture_default_str();
 }
 
@@ -74,7 +77,7 @@ Options parse_options(int argc, char** argv) {
       "  tenon-exec --cell hw/cells/gantry3.yaml --plan plan.tnp \\\n"
       "             --can slcan://127.0.0.1:29536 --log run.lcmlog --json result.json");
   app.set_version_flag("--version", TENON_VERSION);
-  app.add_option("--cell", options.cell, "cell file (YAML)")->required();
+  app.add_option("--cell", options.cell, "Cell file (YAML)")->required();
   add_work(app, options);
   add_outputs(app, options);
   parse(app, argc, argv);

@@ -253,10 +253,10 @@ int main(int argc, char** argv) {
         "  tenon-monitor --lcm-url 'file://run.lcmlog?speed=1'\n"
         "  tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap");
     app.set_version_flag("--version", TENON_VERSION);
-    app.add_option("--lcm-url", options.url, "where telemetry comes from")->capture_default_str();
-    app.add_option("--record-to", options.record_to, "folder of what the key r records")
+    app.add_option("--lcm-url", options.url, "Where telemetry comes from")->capture_default_str();
+    app.add_option("--record-to", options.record_to, "Folder of what the key r records")
         ->capture_default_str();
-    app.add_flag("--lines", options.lines, "write lines on a terminal too");
+    app.add_flag("--lines", options.lines, "Write lines on a terminal too");
     const CLI::App* exports = describe_export(app, export_options);
     tenon::parse(app, argc, argv);
     return exports->parsed() ? run_export(export_options) : watch(options);

@@ -20,6 +20,7 @@
 #include "hw/main_can_check.h"
 #include "hw/main_can_motors.h"
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 #include "shared/canopen/constants.h"
 #include "shared/config/command_line.h"
 #include "shared/system/monotonic_clock.h"
@@ -212,70 +213,112 @@ constexpr const char* kFooter =
     "  tenon-can --can socketcan:can0 read 3 0x6041 0\n"
     "  tenon-can check hw/robots/lwa4p/robot.yaml --eds joint.dcf";
 
+/// Of a subcommand. @param example what follows the program's name
+std::string footer_of(const char* done, const char* failed, const char* example) {
+  return format("Exit status:\n  0  %s\n  1  %s\n  2  bad input\n\nExamples:\n  tenon-can %s", done,
+                failed, example);
+}
+
 void describe_node(CLI::App& command, Arguments& arguments) {
-  command.add_option("NODE", arguments.node, "its number on the bus")
+  command.add_option("NODE", arguments.node, "Its number on the bus")
       ->required()
       ->check(CLI::Range(1, 127));
+}
+
+struct Commands {
+  CLI::App* scan = nullptr;
+  CLI::App* state = nullptr;
+  CLI::App* store = nullptr;
+  CLI::App* check = nullptr;
+  CLI::App* read = nullptr;
+  CLI::App* write = nullptr;
+};
+
+Commands add_commands(CLI::App& app, Arguments& arguments) {
+  Commands commands;
+  commands.scan = app.add_subcommand("scan", "Ask all 127 nodes who they are");
+  commands.state = app.add_subcommand("state", "Listen for heartbeats for a second");
+  for (CLI::App* command : {commands.scan, commands.state}) {
+    command->add_option("--robot", arguments.motors,
+                        "Robot file of motors in MIT mode: ask these instead");
+  }
+  commands.store =
+      app.add_subcommand("store", "Let a node keep its settings without power (1010h)");
+  describe_node(*commands.store, arguments);
+  commands.check =
+      app.add_subcommand("check", "Without a bus: what bring-up would do to a robot's drives");
+  commands.check->add_option("ROBOT", arguments.robot, "Robot file")->required();
+  commands.check
+      ->add_option("--eds", arguments.eds,
+                   "EDS or DCF file of every joint's drive, or NODE=FILE; may be repeated")
+      ->allow_extra_args(false);
+  commands.read = app.add_subcommand("read", "Read an object");
+  commands.write = app.add_subcommand("write", "Write an object");
+  for (CLI::App* command : {commands.read, commands.write}) {
+    describe_node(*command, arguments);
+    command->add_option("INDEX", arguments.index, "Of the object, such as 0x6041")->required();
+    command->add_option("SUB", arguments.sub, "Its sub-index")->required();
+  }
+  commands.write
+      ->add_option("TYPE", arguments.type, "What it is: u8, u16, u32, i8, i16, i32 or str")
+      ->required();
+  commands.write->add_option("VALUE", arguments.value, "What to write")->required();
+  return commands;
+}
+
+/// What each of them ends with, in place of what the whole program does.
+void add_footers(const Commands& commands) {
+  constexpr const char* kMotors =
+      "--robot: a motor is silent, in error, or holds other values than the file";
+  const std::string silent =
+      std::string("nobody answered, or two have one number;\n     ") + kMotors;
+  commands.scan->footer(footer_of("done", silent.c_str(), "--can socketcan:can0 scan"));
+  commands.state->footer(footer_of("done",
+                                   (std::string("there was no heartbeat; ") + kMotors).c_str(),
+                                   "--can socketcan:can0 state"));
+  constexpr const char* kRefused = "the node did not answer, or refused";
+  commands.store->footer(footer_of("done", kRefused, "--can socketcan:can0 store 3"));
+  commands.check->footer(footer_of("nothing is refused", "something is refused",
+                                   "check hw/robots/lwa4p/robot.yaml --eds joint.dcf"));
+  commands.read->footer(footer_of("done", kRefused, "--can socketcan:can0 read 3 0x6041 0"));
+  commands.write->footer(
+      footer_of("done", kRefused, "--can socketcan:can0 write 3 0x6083 0 u32 1000"));
 }
 
 int run(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{"Looks at the nodes of a CAN bus, reads and writes their objects."};
-  app.footer(kFooter);
   app.set_version_flag("--version", TENON_VERSION);
   app.add_option("--can", arguments.uri,
-                 "socketcan:IFACE, slcan:/dev/TTY or slcan://HOST:PORT; "
+                 "Bus: socketcan:IFACE, slcan:/dev/TTY or slcan://HOST:PORT; "
                  "needed by all but check");
-  const auto* bitrate =
-      app.add_option("--bitrate", arguments.bitrate_bps,
-                     "bit/s; set on slcan adapters, checked on SocketCAN; with --robot the file's")
-          ->capture_default_str();
+  const auto* bitrate = app.add_option("--bitrate", arguments.bitrate_bps,
+                                       "Bit rate, bit/s; set on slcan adapters, checked on "
+                                       "SocketCAN; with --robot the file's")
+                            ->capture_default_str();
   app.require_subcommand(1);
-  auto* scan_command = app.add_subcommand("scan", "ask all 127 nodes who they are");
-  auto* state_command = app.add_subcommand("state", "listen for heartbeats for a second");
-  for (auto* command : {scan_command, state_command}) {
-    command->add_option("--robot", arguments.motors,
-                        "robot.yaml of motors in MIT mode: ask these instead");
-  }
-  auto* store_command =
-      app.add_subcommand("store", "let a node keep its settings without power (1010h)");
-  describe_node(*store_command, arguments);
-  auto* check_command =
-      app.add_subcommand("check", "without a bus: what bring-up would do to a robot's drives");
-  check_command->add_option("ROBOT", arguments.robot, "robot.yaml")->required();
-  check_command
-      ->add_option("--eds", arguments.eds,
-                   "EDS or DCF of every joint's drive, or NODE=FILE; may be repeated")
-      ->allow_extra_args(false);
-  auto* read_command = app.add_subcommand("read", "read an object");
-  auto* write_command = app.add_subcommand("write", "write an object");
-  for (auto* command : {read_command, write_command}) {
-    describe_node(*command, arguments);
-    command->add_option("INDEX", arguments.index, "of the object, such as 0x6041")->required();
-    command->add_option("SUB", arguments.sub, "its sub-index")->required();
-  }
-  write_command->add_option("TYPE", arguments.type, "u8, u16, u32, i8, i16, i32 or str")
-      ->required();
-  write_command->add_option("VALUE", arguments.value, "what to write")->required();
+  const Commands commands = add_commands(app, arguments);
+  add_footers(commands);
+  app.footer(kFooter);  // subcommands that come after it would have it too
   parse(app, argc, argv);
 
-  if (check_command->parsed()) return check_robot_file(arguments.robot, arguments.eds);
+  if (commands.check->parsed()) return check_robot_file(arguments.robot, arguments.eds);
   if (arguments.uri.empty()) throw InputError("--can: is required; see tenon-can --help");
   // Everything that was typed is checked before anything is opened.
-  const bool with_object = read_command->parsed() || write_command->parsed();
+  const bool with_object = commands.read->parsed() || commands.write->parsed();
   const canopen::SdoAddress address = with_object ? arguments.address() : canopen::SdoAddress{};
   const std::vector<std::uint8_t> bytes =
-      write_command->parsed() ? canopen::object_bytes(arguments.type, arguments.value)
-                              : std::vector<std::uint8_t>{};
+      commands.write->parsed() ? canopen::object_bytes(arguments.type, arguments.value)
+                               : std::vector<std::uint8_t>{};
   std::optional<Robot> motors;
   if (!arguments.motors.empty()) motors = load_motors(arguments.motors);
   if (motors && bitrate->count() == 0) arguments.bitrate_bps = motors->bitrate_bps;
   const std::unique_ptr<CanBus> bus = open_bus(arguments.uri, arguments.bitrate_bps);
-  if (motors) return look_at_motors(*bus, *motors, state_command->parsed());
-  if (scan_command->parsed()) return scan(*bus);
-  if (store_command->parsed()) return store(*bus, static_cast<std::uint8_t>(arguments.node));
-  if (state_command->parsed()) return state(*bus);
-  return read_command->parsed() ? read(*bus, address) : write(*bus, address, bytes);
+  if (motors) return look_at_motors(*bus, *motors, commands.state->parsed());
+  if (commands.scan->parsed()) return scan(*bus);
+  if (commands.store->parsed()) return store(*bus, static_cast<std::uint8_t>(arguments.node));
+  if (commands.state->parsed()) return state(*bus);
+  return commands.read->parsed() ? read(*bus, address) : write(*bus, address, bytes);
 }
 
 }  // namespace

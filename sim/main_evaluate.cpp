@@ -18,6 +18,7 @@
 #include "shared/system/fan_out.h"
 #include "shared/system/record_file.h"
 #include "shared/task/spread.h"
+#include "sim/evaluation/corner.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/evaluation_html.h"
 #include "sim/evaluation/evaluation_json.h"
@@ -173,18 +174,32 @@ int evaluate(const EvaluateLine& line) {
 
 /// What is written of all runs, and what they must come to.
 void add_files(CLI::App& app, EvaluateLine& line) {
-  app.add_option("--json", line.json, "file for results and all runs");
+  app.add_option("--json", line.json, "File for results and all runs");
   app.add_option("--report", line.report,
-                 "file for an HTML page: paths, replays of failures, plots");
+                 "File for an HTML page: paths, replays of failures, plots");
   app.add_option("--summary", line.summary,
-                 "file for the results without the single runs, as JSON");
+                 "File for the results without the single runs, as JSON");
   app.add_option("--junit", line.junit,
-                 "file for CI tools: JUnit's XML, a testsuite a plan, a testcase a run");
+                 "File for CI tools: JUnit's XML, a testsuite a plan, a testcase a run");
   app.add_option("--min-success", line.min_success,
-                 "proportion of each plan's runs that must succeed, such as 0.99: below it the "
+                 "Proportion of each plan's runs that must succeed, such as 0.99: below it the "
                  "exit status is 1")
       ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--figures", line.figures, "folder for the page's plots, each an SVG file");
+  app.add_option("--figures", line.figures, "Folder for the page's plots, each an SVG file");
+}
+
+/// How the worlds of the runs differ.
+void add_draws(CLI::App& app, EvaluateLine& line) {
+  app.add_option("--experiment", line.experiment,
+                 "Ranges to draw from how the world differs from what task and cell file say");
+  std::string corners;
+  for (const std::string& corner : sim::corner_names()) {
+    corners.append(corners.empty() ? "" : "|").append(corner);
+  }
+  app.add_option("--corner", line.corner,
+                 "Friction low or high and the held part drawn or largest, of what the task leaves "
+                 "open, instead of what --experiment draws of them")
+      ->type_name("TEXT:{" + corners + "}");
 }
 
 int parse_and_evaluate(int argc, char** argv) {
@@ -203,42 +218,38 @@ int parse_and_evaluate(int argc, char** argv) {
       "  tenon-evaluate --cell hw/cells/gantry3.yaml --task planner/tasks/box_on_table_2d.yaml \\\n"
       "                 --plan plan.tnp -n 1000 --seed 1 --json out.json --report out.html");
   app.set_version_flag("--version", TENON_VERSION);
-  app.add_option("--cell", line.cell, "cell file")->required();
-  app.add_option("--task", line.task, "task file, or a variant of one: TASK.yaml#VARIANT")
+  app.add_option("--cell", line.cell, "Cell file")->required();
+  app.add_option("--task", line.task, "Task file, or a variant of one: TASK.yaml#VARIANT")
       ->required();
-  app.add_option("--plan", line.plans, "plan file; several meet the same worlds")->required();
-  app.add_option("--experiment", line.experiment,
-                 "ranges to draw from how the world differs from what task and cell file say");
-  app.add_option("--corner", line.corner,
-                 "friction low or high and the held part drawn or largest, of what the task leaves "
-                 "open, instead of what --experiment draws of them: high,largest");
-  app.add_option("-n", line.count, "number of runs of each plan")
+  app.add_option("--plan", line.plans, "Plan file; several meet the same worlds")->required();
+  add_draws(app, line);
+  app.add_option("-n", line.count, "Number of runs of each plan")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  app.add_option("--seed", line.seed, "what is drawn follows from it and the run's number")
+  app.add_option("--seed", line.seed, "What is drawn follows from it and the run's number")
       ->check(CLI::Range(0.0, 9007199254740992.0).description("[0, 2^53]"))
       ->required();
   app.add_option("--threads", line.threads,
-                 "threads that make the runs; results do not depend on them")
+                 "Threads that make the runs; results do not depend on them")
       ->check(CLI::Range(1, 1024))
       ->default_str("all cores");
   app.add_option("--by", line.by,
-                 "break success down by a drawn quantity, or by two: friction=0.1:0.8:7")
+                 "Break success down by a drawn quantity, or by two: friction=0.1:0.8:7")
       ->expected(1, 2);
-  app.add_option("--runs", line.runs, "run log to go on with; default: --json's name with .jsonl");
+  app.add_option("--runs", line.runs, "Run log to go on with; default: --json's name with .jsonl");
   CLI::Option* shard =
-      app.add_option("--shard", line.shard, "only the I-th part of N of the runs: I/N")
+      app.add_option("--shard", line.shard, "Only the I-th part of N of the runs: I/N")
           ->capture_default_str();
   CLI::Option* merge =
-      app.add_option("--merge", line.merge, "run logs of shards; what they lack is made");
+      app.add_option("--merge", line.merge, "Run logs of shards; what they lack is made");
   add_files(app, line);
   CLI::Option* only =
-      app.add_option("--only", line.only, "make one run again by its number, and tell it in full")
+      app.add_option("--only", line.only, "Make one run again by its number, and tell it in full")
           ->check(CLI::Range(0, 10'000'000))
           ->excludes(shard)
           ->excludes(merge);
   app.add_option("--black-box", line.black_box,
-                 "with --only and one plan: the run's last minute of cycles as CSV")
+                 "With --only and one plan: the run's last minute of cycles as CSV")
       ->needs(only);
   parse(app, argc, argv);
   return evaluate(line);

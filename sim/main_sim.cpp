@@ -313,48 +313,48 @@ int parse_and_simulate(int argc, char** argv) {
       "  tenon-sim --cell hw/cells/gantry3.yaml --task planner/tasks/box_on_table_2d.yaml \\\n"
       "            --start 7 --seed 1 --can slcan-listen://127.0.0.1:29536 --json truth.json");
   app.set_version_flag("--version", TENON_VERSION);
-  app.add_option("--cell", line.cell, "cell file")->required();
-  app.add_option("--task", line.task, "task file: held part, environment, starts")->required();
+  app.add_option("--cell", line.cell, "Cell file")->required();
+  app.add_option("--task", line.task, "Task file: held part, environment, starts")->required();
   app.add_option(
          "--can", line.can,
-         "bus; slcan-listen://HOST:PORT serves it, port 0: a free one; arm=URI,sensor=URI for a "
+         "Bus; slcan-listen://HOST:PORT serves it, port 0: a free one; arm=URI,sensor=URI for a "
          "force/torque sensor with a bus of its own")
       ->required();
-  app.add_option("--start", line.start, "where the tool stands; default: the task's first start");
+  app.add_option("--start", line.start, "Where the tool stands; default: the task's first start");
   CLI::Option* seed = app.add_option(
-      "--seed", line.seed, "how far the environment is off is drawn by it, and the sensor's noise");
+      "--seed", line.seed, "How far the environment is off is drawn by it, and the sensor's noise");
   constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53U;  // what a JSON reader keeps exactly
   seed->check(CLI::Range(std::uint64_t{0}, kSeedMax).description("[0, 2^53]"));
-  app.add_option("--offset", line.offset, "how far the environment is off: x_m=0.02,y_m=-0.01")
+  app.add_option("--offset", line.offset, "How far the environment is off: x_m=0.02,y_m=-0.01")
       ->excludes(seed);
   app.add_option("--experiment", line.experiment,
-                 "ranges to draw from how the world differs from what task and cell file say")
+                 "Ranges to draw from how the world differs from what task and cell file say")
       ->needs(seed);
   app.add_option("--fault", line.faults,
-                 "a fault of the bus or a device, as drop:node=3,time_s=2; may be repeated; "
+                 "A fault of the bus or a device, as drop:node=3,time_s=2; may be repeated; "
                  "--fault help lists them")
       ->allow_extra_args(false)
       ->each(answer_help);
   app.add_option(
       "--lcm-url", line.lcm_url,
-      "where the executor's telemetry comes from: a fault with at=step:N hears from it which step "
+      "Where the executor's telemetry comes from: a fault with at=step:N hears from it which step "
       "runs");
   app.add_option("--twin", line.twins,
                  "NODE=FILE: that joint's drive answers with the objects, limits and access types "
                  "of an EDS or DCF file; may be repeated")
       ->allow_extra_args(false);
-  app.add_option("--eds", line.eds, "folder for an EDS file of every node, written at the start")
+  app.add_option("--eds", line.eds, "Folder for an EDS file of every node, written at the start")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--json", line.json, "file for the truth, written whole at the end");
-  app.add_option("--ready-file", line.ready_file, "file that appears when the bus is open");
+  app.add_option("--json", line.json, "File for the truth, written whole at the end");
+  app.add_option("--ready-file", line.ready_file, "File that appears when the bus is open");
   app.add_option_function<std::string>(
          "--view",
          [&line](const std::string& text) { line.view_port = sim::parse_view_port(text); },
-         "shows the cell as it really is, live, in a browser on this machine: at "
+         "Shows the cell as it really is, live, in a browser on this machine: at "
          "http://127.0.0.1:PORT/, or at a free port")
       ->expected(0, 1)
       ->option_text("[PORT]");
-  app.add_flag("--once", line.once, "end when the client has gone and the arm is at rest");
+  app.add_flag("--once", line.once, "End when the client has gone and the arm is at rest");
   parse(app, argc, argv);
   return simulate(line);
 }

@@ -78,10 +78,11 @@ inline void answer_with_texts(CLI::App& app, int argc, char** argv) {
   app.add_flag_callback("--man", alone, "Print the manual page and exit");
   app.add_flag_callback("--bash-completion", alone,
                         "Print what bash sources to complete this program's command line");
-  if (argc != 2) return;
-  const std::string_view asked = argv[1];
   const std::string path = argv[0];
   const std::string program = path.substr(path.rfind('/') + 1);
+  app.name(program);  // of the usage, wherever the program lies
+  if (argc != 2) return;
+  const std::string_view asked = argv[1];
   if (asked == "--man") {
     std::fputs(manual_page(app, program, app.version()).c_str(), stdout);
   } else if (asked == "--bash-completion") {

@@ -71,28 +71,33 @@ std::string takes(const CLI::Option& option) {
   return option.get_items_expected_max() == 0 ? std::string() : option.get_type_name();
 }
 
+/// What stands between the words of a list: a bar where the words themselves have commas.
+char parting(const std::string& words) { return words.find('|') == std::string::npos ? ',' : '|'; }
+
 /// The same for a reader: "a|b" of "TEXT:{a,b}", "INT in [1 - 9]" of "UINT:INT in [1 - 9]".
 std::string value_of(const CLI::Option& option) {
   std::string type = takes(option);
   const std::size_t colon = type.find(':');
   if (colon == std::string::npos || colon + 1 == type.size()) return type;
-  std::string value = type.substr(colon + 1);
+  const std::string value = type.substr(colon + 1);
   if (value.front() == '[') return type.substr(0, colon) + " in " + value;
   if (value.front() == '{' && value.back() == '}') {
-    value = value.substr(1, value.size() - 2);
-    std::replace(value.begin(), value.end(), ',', '|');
+    std::string words = value.substr(1, value.size() - 2);
+    std::replace(words.begin(), words.end(), parting(words), '|');
+    return words;
   }
   return value;
 }
 
-/// The words of "TEXT:{a,b}", apart by blanks; none where there is no such list.
+/// The words of "TEXT:{a,b}" or "TEXT:{a,b|c,d}", apart by blanks; none where there is no such
+/// list.
 std::string choices(const CLI::Option& option) {
   const std::string type = takes(option);
   const std::size_t begin = type.find('{');
   const std::size_t end = type.find('}', begin == std::string::npos ? 0 : begin);
   if (begin == std::string::npos || end == std::string::npos) return {};
   std::string words = type.substr(begin + 1, end - begin - 1);
-  std::replace(words.begin(), words.end(), ',', ' ');
+  std::replace(words.begin(), words.end(), parting(words), ' ');
   return words;
 }
 
@@ -217,6 +222,43 @@ Options all_options(const CLI::App& app) {
   return options;
 }
 
+/// What is completed, and the option that it would be the value of. Bash takes --option=value
+/// apart, unless it was told not to.
+constexpr const char* kWordAndOption =
+    "  local word=${COMP_WORDS[COMP_CWORD]} option=${COMP_WORDS[COMP_CWORD - 1]} glued=\n"
+    "  if [[ $word == = ]]; then\n"
+    "    word=\n"
+    "  elif [[ $option == = && $COMP_CWORD -gt 2 ]]; then\n"
+    "    option=${COMP_WORDS[COMP_CWORD - 2]}\n"
+    "  elif [[ $word == --*=* ]]; then\n"
+    "    option=${word%%=*} glued=${word%%=*}= word=${word#*=}\n"
+    "  fi\n";
+
+/// Sets `at` to where a subcommand stands: behind the program's own options and their values, which
+/// bash takes apart at colons and equals signs.
+std::string subcommands_place(const CLI::App& app) {
+  std::vector<std::string> with_value;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional() || takes(*option).empty()) continue;
+    const std::vector<std::string> names = names_of(*option);
+    with_value.insert(with_value.end(), names.begin(), names.end());
+  }
+  std::string text =
+      "  local at=1\n"
+      "  while [[ $at -lt $COMP_CWORD && ${COMP_WORDS[at]} == -* ]]; do\n"
+      "    case ${COMP_WORDS[at]} in\n    ";
+  text += strung(with_value, "|");
+  return text +
+         ")\n"
+         "      ((at++))\n"
+         "      if [[ ${COMP_WORDS[at]} == = ]]; then ((at++)); fi\n"
+         "      while [[ ${COMP_WORDS[at + 1]} == [:=]* ]]; do ((at += 2)); done\n"
+         "      ;;\n"
+         "    esac\n"
+         "    ((at++))\n"
+         "  done\n";
+}
+
 }  // namespace
 
 std::string manual_page(const CLI::App& app, const std::string& program,
@@ -247,22 +289,25 @@ std::string bash_completion(const CLI::App& app, const std::string& program) {
     const std::vector<std::string> names = names_of(*option);
     words.insert(names.begin(), names.end());
     if (const std::string values = choices(*option); !values.empty()) {
-      cases += "    " + strung(names, "|") + ")\n      COMPREPLY=($(compgen -W \"" + values +
-               "\" -- \"$word\"))\n      return\n      ;;\n";
+      cases += "    " + strung(names, "|") + ")\n      COMPREPLY=($(compgen -P \"$glued\" -W \"" +
+               values + "\" -- \"$word\"))\n      return\n      ;;\n";
     }
   }
   std::vector<std::string> subcommands;
   for (const CLI::App* sub : subcommands_of(app)) subcommands.push_back(sub->get_name());
-  std::string text = function + "() {\n  local word=${COMP_WORDS[COMP_CWORD]}\n";
-  if (!cases.empty()) text += "  case ${COMP_WORDS[COMP_CWORD - 1]} in\n" + cases + "  esac\n";
-  text += "  if [[ $word == -* ]]; then\n    COMPREPLY=($(compgen -W \"" +
+  std::string text = function + "() {\n" + kWordAndOption;
+  if (!cases.empty()) text += "  case $option in\n" + cases + "  esac\n";
+  if (!subcommands.empty()) text += subcommands_place(app);
+  text += "  if [[ -z $glued && $word == -* ]]; then\n    COMPREPLY=($(compgen -W \"" +
           strung({words.begin(), words.end()}, " ") + "\" -- \"$word\"))\n";
   if (!subcommands.empty()) {
-    text += "  elif [[ $COMP_CWORD -eq 1 ]]; then\n    COMPREPLY=($(compgen -W \"" +
+    text += "  elif [[ $at -eq $COMP_CWORD ]]; then\n    COMPREPLY=($(compgen -W \"" +
             strung(subcommands, " ") + "\" -- \"$word\"))\n";
   }
   // A name of a file may hold blanks.
-  text += "  else\n    local IFS=$'\\n'\n    COMPREPLY=($(compgen -f -- \"$word\"))\n  fi\n}\n";
+  text +=
+      "  else\n    local IFS=$'\\n'\n    COMPREPLY=($(compgen -P \"$glued\" -f -- \"$word\"))\n"
+      "  fi\n}\n";
   return text + "complete -o filenames -F " + function + " " + program + "\n";
 }
 

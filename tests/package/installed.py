@@ -21,7 +21,17 @@ PROGRAMS = ["tenon-can", "tenon-evaluate", "tenon-exec", "tenon-inspect", "tenon
 COMPLETIONS = [
     ("tenon-plan", ["--ch"], {"--check"}),
     ("tenon-plan", ["--method", "contact"], {"contact-greedy"}),
+    ("tenon-plan", ["--method", "=", "s"], {"single-particle"}),
+    ("tenon-plan", ["--method=s"], {"--method=single-particle"}),
+    ("tenon-plan", ["--method", "="], {"mha", "single-particle", "contact-greedy"}),
+    ("tenon-plan", ["--cell", "=", "my"], {"my task.yaml"}),
+    ("tenon-exec", ["--identify-contact", "-"], {"-x", "-y", "-z"}),
+    ("tenon-evaluate", ["--corner", "low"], {"low,drawn", "low,largest"}),
     ("tenon-can", ["sc"], {"scan"}),
+    ("tenon-can", ["--can", "slcan", ":", "//127.0.0.1", ":", "29536", "sc"], {"scan"}),
+    ("tenon-can", ["--bitrate", "=", "500000", "--can", "socketcan", ":", "can0", "sc"], {"scan"}),
+    ("tenon-can", ["--can", "my"], {"my task.yaml"}),
+    ("tenon-monitor", ["--lines", "--lcm-url", "none", "e"], {"export"}),
     ("tenon-plan", ["my"], {"my task.yaml"}),
     ("tenon-can", ["scan", "my"], {"my task.yaml"}),
 ]
@@ -45,6 +55,27 @@ def options_of(program):
     return options
 
 
+def check_help(program, failures):
+    """Of the program and of each subcommand: its own name, its own examples, one way of writing."""
+    text = run(program, "--help")
+    subcommands = re.findall(r"^  ([a-z]+) ", text.partition("\nSubcommands:\n")[2].partition("\n\n")[0], re.M)
+    for words in [[], *([name] for name in subcommands)]:
+        shown = " ".join([program.name, *words])
+        text = run(program, *words, "--help")
+        failures.check(f"\nUsage: {shown} [OPTIONS]" in text, f"{shown}: its help gives its usage as {re.findall('Usage.*', text)}")
+        examples = re.findall(r"^  (tenon.*)", text.partition("\nExamples:\n")[2], re.M)
+        failures.check(examples, f"{shown}: its help has no example")
+        for example in examples:
+            failures.check(example.split()[0] == program.name and set(words) <= set(example.split()),
+                           f"{shown}: its help has an example of something else: {example}")
+        lines = text.partition("\nExit status:")[0].partition("\nExamples:")[0].splitlines()
+        for line, following in zip(lines, [*lines[1:], ""]):
+            # What is too long for its column is described in the line after it.
+            beside = re.match(r"  \S.{25} (?=\S)", line) and not following.startswith(" " * 28)
+            if beside or line.startswith(" " * 28):
+                failures.check(not line[28:29].islower() and line[27] == " ", f"{shown}: its help describes without a capital: {line}")
+
+
 def check_page(program, page, failures):
     """What a reader of the page would stumble over."""
     sections = re.findall(r"^\.SH (.*)$", page, re.M)
@@ -63,6 +94,7 @@ def check_texts(prefix, failures):
     named = 0
     for program in PROGRAMS:
         options = options_of(prefix / "bin" / program)
+        check_help(prefix / "bin" / program, failures)
         failures.check({"--help", "--version", "--man"} <= options, f"{program}: its help names only {options}")
         page = gzip.decompress((prefix / f"share/man/man1/{program}.1.gz").read_bytes()).decode()
         check_page(program, page, failures)
