@@ -42,10 +42,10 @@ void print_opening(const Plan& plan, const Cell& cell, const DryRun& dry_run) {
     loads += ", " + hw::bus_title(cell.robot, bus) +
              format(" load at most %.0f %%", 100.0 * hw::bus_load(cell.robot, bus).worst);
   }
-  std::printf("plan '%s', start '%s', %d steps; cell '%s', robot '%s'\n", plan.task_name.c_str(),
-              plan.start_name.c_str(), static_cast<int>(plan.steps.size()), cell.name.c_str(),
-              cell.robot.name.c_str());
-  std::printf("cycle %g ms, latency %g ms (plan allows %g)%s\n", 1e-3 * cell.robot.cycle_us,
+  std::printf("plan '%s', start '%s', %d step%s; cell '%s', robot '%s'\n", plan.task_name.c_str(),
+              plan.start_name.c_str(), static_cast<int>(plan.steps.size()),
+              plural(plan.steps.size()), cell.name.c_str(), cell.robot.name.c_str());
+  std::printf("cycle %g ms, latency %g ms (plan allows %g ms)%s\n", 1e-3 * cell.robot.cycle_us,
               1e3 * latency_s(cell.robot), 1e3 * plan.latency_max_s, loads.c_str());
   std::printf("%s", slowed_steps(dry_run, cell).c_str());
   std::printf("%s", resolved_steps(dry_run, cell).c_str());

@@ -98,7 +98,7 @@ int scan(CanBus& bus) {
                  "of them connected at a time)\n",
                  id, found.answers);
   }
-  std::printf("%d node%s\n", scan.count(), scan.count() == 1 ? "" : "s");
+  std::printf("%d node%s\n", scan.count(), plural(scan.count()));
   if (scan.count() == 0) {
     std::fprintf(stderr,
                  "nobody answered within %.0f s; check power, wiring and termination, and the bit "

@@ -152,7 +152,7 @@ Verdict recertify(const Arguments& a, const Plan& plan, const std::vector<std::u
   Verdict verdict;
   for (const planner::VariantRun& run : certification.runs) {
     const std::string line =
-        run.holds ? format(", %zu particle%s", run.chains.size(), run.chains.size() == 1 ? "" : "s")
+        run.holds ? format(", %zu particle%s", run.chains.size(), plural(run.chains.size()))
                   : format(": step %zu, particle %zu: ", run.disagreement.step,
                            run.disagreement.particle) +
                         run.disagreement.why;

@@ -143,7 +143,8 @@ PlanMethod chosen_method(const std::string& name) {
 const Start& chosen_start(const Task& task, const std::string& name) {
   if (name.empty() && !task.starts.empty()) return task.starts.front();
   if (const Start* start = find_start(task, name)) return *start;
-  throw InputError("--start " + name + ": task '" + task.name + "' has only the starts " +
+  throw InputError("--start " + name + ": task '" + task.name + "' has no start of that name; " +
+                   (task.starts.size() == 1 ? "its only one is " : "its starts are ") +
                    start_names(task) + start_meant(task, name));
 }
 
@@ -153,8 +154,8 @@ void write_each(const Arguments& a, planner::PlannerOptions& options,
   options.planned = [&a, now_s](const planner::PlanReport& report) {
     write_file(a.output, report.bytes);
     if (a.improve_s == 0.0 || a.json == "-") return;
-    std::printf("%6.1f s: %zu steps, %s", now_s(), report.plan->steps.size(),
-                planner::cost_text(*report.plan).c_str());
+    std::printf("%6.1f s: %zu step%s, %s", now_s(), report.plan->steps.size(),
+                plural(report.plan->steps.size()), planner::cost_text(*report.plan).c_str());
     std::fflush(stdout);
   };
 }

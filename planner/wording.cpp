@@ -26,8 +26,7 @@ std::string nearest(const BeliefGraph& graph) {
 /// What has been tried by then.
 std::string tried(const PlanReport& report, const BeliefGraph& graph) {
   return format("%zu expansion%s and %zu refuted path%s", report.expansions,
-                report.expansions == 1 ? "" : "s", report.refusals.size(),
-                report.refusals.size() == 1 ? "" : "s") +
+                plural(report.expansions), report.refusals.size(), plural(report.refusals.size())) +
          nearest(graph) +
          (report.refusals.empty() ? "" : "; last refuted: " + report.refusals.back());
 }
@@ -70,19 +69,21 @@ std::vector<std::string> heuristic_names(const std::vector<Guide>& guides) {
 }
 
 std::string guides_found(const std::vector<Guide>& guides, std::uint64_t moves) {
-  std::string text = format("%zu guide%s, found with %llu moves", guides.size(),
-                            guides.size() == 1 ? "" : "s", static_cast<unsigned long long>(moves));
+  std::string text =
+      format("%zu guide%s, found with %llu move%s", guides.size(), plural(guides.size()),
+             static_cast<unsigned long long>(moves), plural(moves));
   for (const Guide& guide : guides) text += "; " + guide_text(guide);
   return text;
 }
 
 std::string still(const char* doing, std::uint64_t moves, std::size_t states) {
-  return format("%s, %llu moves simulated and %zu states so far", doing,
-                static_cast<unsigned long long>(moves), states);
+  return format("%s, %llu move%s simulated and %zu state%s so far", doing,
+                static_cast<unsigned long long>(moves), plural(moves), states, plural(states));
 }
 
 std::string guide_followed(const Guide& guide, std::size_t moves) {
-  return "the guide " + guide_text(guide) + format(" leads to the goal in %zu steps", moves);
+  return "the guide " + guide_text(guide) +
+         format(" leads to the goal in %zu step%s", moves, plural(moves));
 }
 
 std::string guide_left(const Guide& guide, const std::string& where) {
@@ -90,8 +91,8 @@ std::string guide_left(const Guide& guide, const std::string& where) {
 }
 
 std::string path_found(const SearchResult& search) {
-  return format("a path of %zu steps after %zu expansions", search.path.size(),
-                search.expanded.size());
+  return format("a path of %zu step%s after %zu expansion%s", search.path.size(),
+                plural(search.path.size()), search.expanded.size(), plural(search.expanded.size()));
 }
 
 std::string less_to_hold(const CalibrationErrors& held) {
@@ -127,10 +128,11 @@ std::string no_path(PlanStatus status, const PlanReport& report, const BeliefGra
   if (status == PlanStatus::kTimeLimit) {
     what = format("no path within %g s (raise --time-limit), after ", limits.time_s);
   } else if (status == PlanStatus::kMoveLimit) {
-    what = format("no path within %llu simulated moves (raise --move-limit), after ",
-                  static_cast<unsigned long long>(limits.moves));
+    what = format("no path within %llu simulated move%s (raise --move-limit), after ",
+                  static_cast<unsigned long long>(limits.moves), plural(limits.moves));
   } else if (status == PlanStatus::kExpansionLimit) {
-    what = format("%zu expansions in a search, the limit: no path after ", limits.expansions);
+    what = format("%zu expansion%s in a search, the limit: no path after ", limits.expansions,
+                  plural(limits.expansions));
   } else if (status == PlanStatus::kNoAttractor) {
     what = "no push from the start reduces its uncertainty, and no path exists after ";
   }

@@ -12,6 +12,7 @@
 #include "hw/bus_load/bus_load.h"
 #include "hw/bus_load/response_times.h"
 #include "shared/base/error.h"
+#include "shared/base/text.h"
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
 #include "shared/config/load.h"
@@ -62,7 +63,9 @@ void make_runs(const EvaluateLine& line, const Runners& runners, sim::Evaluation
     std::fprintf(stderr, "%s: its last line was torn\n", parameters.log.c_str());
   }
   const std::size_t found = maker.all() - maker.missing();
-  if (found > 0) std::printf("%zu of %zu runs are there already\n", found, maker.all());
+  if (found > 0)
+    std::printf("%zu of %zu run%s %s there already\n", found, maker.all(), plural(maker.all()),
+                found == 1 ? "is" : "are");
 
   Progress progress(maker.all(), found);
   maker.make([&](std::size_t plan, const sim::Trial& trial) { return runners[plan].run(trial); },

@@ -20,11 +20,11 @@ std::string line(const StepDemand& step, const Cell& cell) {
   const Joint& near = joint_of(cell, step.limit);
   const Joint& fast = joint_of(cell, step.speed);
   const Joint& hasty = joint_of(cell, step.acceleration);
-  return format("%4d  %-10s %8.4f %-3s %8.4f   %-10s %5.1f %%   %-10s %5.1f %%   %6.3f   %5.3f\n",
-                static_cast<int>(step.step), near.name.c_str(), step.limit_position,
-                joint_unit(near), step.limit.value, fast.name.c_str(), 100.0 * step.speed.value,
-                hasty.name.c_str(), 100.0 * step.acceleration.value, step.conditioning,
-                step.slow_down);
+  return format(
+      "%4d  %-10s %8.4f %-3s %8.4f %-3s   %-10s %5.1f %%   %-10s %5.1f %%   %6.3f   %5.3f\n",
+      static_cast<int>(step.step), near.name.c_str(), step.limit_position, joint_unit(near),
+      step.limit.value, joint_unit(near), fast.name.c_str(), 100.0 * step.speed.value,
+      hasty.name.c_str(), 100.0 * step.acceleration.value, step.conditioning, step.slow_down);
 }
 
 /// N and Nm; null where the arm tells nothing.
@@ -62,7 +62,7 @@ std::string to_table(const DryRun& run, const Cell& cell) {
   }
   text += run.start ? "\n" : " out of reach\n";
   text +=
-      "step  nearest limit            margin   fastest joint        most accelerated     "
+      "step  nearest limit            margin       fastest joint        most accelerated     "
       "condit.  slow-down\n";
   for (const StepDemand& step : run.steps) text += line(step, cell);
   text += resolved_steps(run, cell);

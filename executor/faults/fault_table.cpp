@@ -239,7 +239,7 @@ constexpr bool is_bounded(const FaultBound& bound) {
 
 void append(std::string& text, int count, const char* what) {
   if (count == 0) return;
-  text += format("%s%d %s%s", text.empty() ? "" : " and ", count, what, count == 1 ? "" : "s");
+  text += format("%s%d %s%s", text.empty() ? "" : " and ", count, what, plural(count));
 }
 
 }  // namespace

@@ -376,16 +376,16 @@ CheckReport check_report(const Robot& robot, const std::map<std::uint8_t, Device
   if (refused > 0) {
     report.text +=
         format("refused, %d object%s; see the lines above, and the profiles in hw/drives", refused,
-               refused == 1 ? "" : "s");
+               plural(refused));
   } else if (!report.good) {
     report.text += "refused, the frames do not fit the bus";
   } else if (unknown > 0) {
     report.text += format("nothing refused; %zu joint%s without a description file (--eds)",
-                          unknown, unknown == 1 ? "" : "s");
+                          unknown, plural(unknown));
   } else if (unsaid > 0) {
     report.text +=
         format("nothing refused; of %d object%s the file does not say what bring-up needs", unsaid,
-               unsaid == 1 ? "" : "s");
+               plural(unsaid));
   } else {
     report.text += "would come up";
   }

@@ -77,9 +77,9 @@ std::string header_text(const Plan& plan, std::size_t bytes) {
                  static_cast<unsigned long long>(plan.task_hash), plan.start_name.c_str(),
                  to_string(plan.method),
                  plan.check_envelopes ? "" : "; no envelopes are checked in execution");
-  text += format("%zu bytes, %zu steps, %zu parameter set%s, coordinates %s\n", bytes,
-                 plan.steps.size(), plan.parameter_sets.size(),
-                 plan.parameter_sets.size() == 1 ? "" : "s", axis_list(plan.coordinates).c_str());
+  text += format("%zu bytes, %zu step%s, %zu parameter set%s, coordinates %s\n", bytes,
+                 plan.steps.size(), plural(plan.steps.size()), plan.parameter_sets.size(),
+                 plural(plan.parameter_sets.size()), axis_list(plan.coordinates).c_str());
   text += format("start (%.4f, %.4f, %.4f) m, goal (%.4f, %.4f, %.4f) m within ",
                  plan.start.position_m.x(), plan.start.position_m.y(), plan.start.position_m.z(),
                  plan.goal.position_m.x(), plan.goal.position_m.y(), plan.goal.position_m.z()) +

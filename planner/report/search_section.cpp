@@ -36,8 +36,9 @@ bool is_searched(const SearchStory& story) { return !story.expansions.empty(); }
 /// What was found, in a sentence or two.
 std::string found(const SearchStory& story) {
   const std::string effort =
-      format("%zu search%s made %zu expansions; %zu states were seen. ", story.rounds.size(),
-             story.rounds.size() == 1 ? "" : "es", expansions_of(story), story.states);
+      format("%zu search%s made %zu expansion%s; %zu state%s seen. ", story.rounds.size(),
+             story.rounds.size() == 1 ? "" : "es", expansions_of(story),
+             plural(expansions_of(story)), story.states, story.states == 1 ? " was" : "s were");
   if (!story.guide.empty()) {
     return "The plan follows the guide " + story.guide + " to the letter. " +
            (story.rounds.empty() ? "Nothing was searched. " : effort) + "No bound is proven.";
@@ -50,7 +51,10 @@ std::string found(const SearchStory& story) {
               ? format("and any path of the searched graph at least %.0f: it is at most %.2f times "
                        "the optimum.",
                        least, story.bound)
-              : "and no bound is proven.");
+              : "and no bound is proven.") +
+         " The search adds up moves that it simulated one by one; the plan's own cost is that of "
+         "the "
+         "certified chain, run from start to end at the plan's speeds, and may differ a little.";
 }
 
 std::string table_of(const std::string& titles, const std::string& rows) {
@@ -131,8 +135,8 @@ std::string round_table(const SearchStory& story) {
         format("<tr><th scope='row'>%zu</th><td class='num'>%g, %g</td><td class='num'>%zu</td>",
                i + 1, round.parameters.w1, round.parameters.w2, expansions_of(round));
     rows += round.steps == 0 ? "<td class='num'>none</td><td></td>"
-                             : format("<td class='num'>%zu steps</td><td class='num'>%.0f</td>",
-                                      round.steps, round.cost);
+                             : format("<td class='num'>%zu step%s</td><td class='num'>%.0f</td>",
+                                      round.steps, plural(round.steps), round.cost);
     rows += format("<td class='num'>%.0f</td><td>", round.lower_bound) +
             drawing::escaped(round.outcome) + "</td></tr>\n";
   }
@@ -175,11 +179,11 @@ std::string search_text(const SearchStory& story) {
   std::string text = "search: " + found(story) + "\n";
   const std::vector<std::size_t> sums = expansions_by_queue(story);
   for (std::size_t i = 0; i < sums.size() && !story.rounds.empty(); ++i) {
-    text += format("  %6zu expansions by ", sums[i]) + story.heuristics[i] + "\n";
+    text += format("  %6zu expansion%s by ", sums[i], plural(sums[i])) + story.heuristics[i] + "\n";
   }
   for (const SearchStory::Phase& phase : story.phases) {
-    text += format("  %8.2f s, %llu moves: ", phase.time_s,
-                   static_cast<unsigned long long>(phase.moves)) +
+    text += format("  %8.2f s, %llu move%s: ", phase.time_s,
+                   static_cast<unsigned long long>(phase.moves), plural(phase.moves)) +
             phase.name + "\n";
   }
   return text;

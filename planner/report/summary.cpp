@@ -116,8 +116,6 @@ std::vector<std::string> missed(const PlanReport& report, const Task& task) {
   return lines;
 }
 
-const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
-
 std::string cost_text(const Plan& plan) {
   return format("cost %.0f, ", plan.cost) +
          (plan.bound > 0.0
@@ -180,9 +178,9 @@ std::string summary(const PlanReport& report, const Task& task, const std::strin
     return static_cast<unsigned long long>(c.rollouts);
   };
   std::string text;
-  text += format("%s: start %s of %s, method %s, %zu steps, %zu bytes\n", file.c_str(),
+  text += format("%s: start %s of %s, method %s, %zu step%s, %zu bytes\n", file.c_str(),
                  plan.start_name.c_str(), plan.task_name.c_str(), to_string(plan.method),
-                 plan.steps.size(), report.bytes.size());
+                 plan.steps.size(), plural(plan.steps.size()), report.bytes.size());
   text += cost_text(plan);
   text += format(
       "search: %zu expansion%s (%zu for the first path), %zu state%s, %zu guide%s, "

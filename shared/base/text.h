@@ -37,6 +37,9 @@ inline constexpr std::array<const char*, 6> kAxisNames = {"x", "y", "z", "rx", "
   return text.empty() ? "none" : text;
 }
 
+/// What makes a noun agree with a count: "s", or nothing of one.
+[[nodiscard]] constexpr const char* plural(auto count) { return count == 1 ? "" : "s"; }
+
 /// As one word of a POSIX shell: quoted where it has to be.
 [[nodiscard]] inline std::string shell_word(const std::string& word) {
   const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {

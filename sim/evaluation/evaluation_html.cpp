@@ -112,7 +112,7 @@ class Report {
   [[nodiscard]] std::string opening() const {
     std::size_t runs = 0;
     for (const Candidate& candidate : evaluation_.candidates) runs += candidate.runs.size();
-    std::string text = format("<p class='lead'>%zu runs, seed %llu. ", runs,
+    std::string text = format("<p class='lead'>%zu run%s, seed %llu. ", runs, plural(runs),
                               static_cast<unsigned long long>(evaluation_.seed));
     text += evaluation_.ranges
                 ? "Where the environment stands is drawn, and how else the world differs: "
@@ -176,6 +176,7 @@ class Report {
     std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < summaries_.size(); ++i) {
       const Summary& summary = summaries_[i];
+      const bool spreads = summary.done > 1;  // one run does not
       bool first = true;
       for (const AxisError& error : summary.errors) {
         const int axis = error.axis;
@@ -184,8 +185,9 @@ class Report {
         std::vector<std::string> row = {
             "<td>" + (first ? name_of(evaluation_.candidates[i]) : "") + "</td>",
             std::string("<td>") + axis_name(axis) + "</td>",
-            number_cell(format("%.2f %s", shown(error.initial.deviation, axis), unit)),
-            number_cell(format("%.4f %s", shown(error.final.deviation, axis), unit)),
+            number_cell(spreads ? format("%.2f %s", shown(error.initial.deviation, axis), unit)
+                                : ""),
+            number_cell(spreads ? format("%.4f %s", shown(error.final.deviation, axis), unit) : ""),
             number_cell(ratio_text(error)),
             number_cell(format("%+.3f %s", shown(error.final.mean, axis), unit)),
             number_cell(first ? format("%.2f / %.2f mm", 1e3 * summary.error_norm_m.mean,
@@ -286,8 +288,8 @@ class Report {
         "<th>Why, in the first of them</th><th>Replay</th></tr></thead>\n<tbody>\n";
     for (const FailureKind& kind : kinds_of_failure(evaluation_.candidates[i])) {
       const TrialResult& result = kind.first().result;
-      html += "<tr><th scope='row' class='num'>" + std::to_string(kind.count) +
-              (kind.count == 1 ? " run</th>" : " runs</th>") + class_cell(result) +
+      html += "<tr><th scope='row' class='num'>" +
+              format("%zu run%s</th>", kind.count, plural(kind.count)) + class_cell(result) +
               step_cells(result) + "<td data-label='Ending'>" + drawing::escaped(result.ending) +
               "</td><td data-label='Why'>" + drawing::escaped(result.reason) +
               "</td><td data-label='Replay'>" + replays(i, kind) + "</td></tr>\n";
@@ -302,8 +304,8 @@ class Report {
     if (failed.empty()) return "<p><b>No run failed.</b></p>\n";
     const std::size_t listed =
         std::min(failed.size(), kFailuresListed / evaluation_.candidates.size());
-    std::string html = kinds_table(i) + "<details><summary>" + std::to_string(failed.size()) +
-                       (failed.size() == 1 ? " run" : " runs") +
+    std::string html = kinds_table(i) + "<details><summary>" +
+                       format("%zu run%s", failed.size(), plural(failed.size())) +
                        " that failed</summary>\n<div class='wide'><table class='moves'><thead><tr>"
                        "<th class='num'>Run</th><th class='num'>Off</th><th>How</th>"
                        "<th class='num'>Step</th><th>Outcome</th><th>Why, and how to see it again"

@@ -25,6 +25,27 @@ std::string text_of(const Rate& rate) {
                 1e2 * interval.low, 1e2 * interval.high);
 }
 
+/// A line for each axis. One run has no deviation.
+std::string errors_text(const Summary& summary) {
+  std::string text;
+  for (const AxisError& error : summary.errors) {
+    const int axis = error.axis;
+    const char* unit = axis < 3 ? "mm" : "deg";
+    text += format("  %s: off by ", axis_name(axis));
+    if (summary.done == 1) {
+      text += format("%.3f at first, then %.3f %s\n", shown(error.initial.mean, axis),
+                     shown(error.final.mean, axis), unit);
+      continue;
+    }
+    text += format("%.3f at first, then %.3f on average with deviation %.4f %s",
+                   shown(error.initial.deviation, axis), shown(error.final.mean, axis),
+                   shown(error.final.deviation, axis), unit);
+    const std::string ratio = ratio_text(error);
+    text += ratio.empty() ? "\n" : " (" + ratio + ")\n";
+  }
+  return text;
+}
+
 std::string describe(const Task& task, const Candidate& candidate) {
   const Summary s = summarise(task, candidate);
   std::string text = candidate.file + " (" + to_string(candidate.plan.method) + ", start " +
@@ -40,14 +61,7 @@ std::string describe(const Task& task, const Candidate& candidate) {
                    shown(task.tilt_rad, 3)) +
             text_of(s.promised) + "\n";
   }
-  for (const AxisError& error : s.errors) {
-    const int axis = error.axis;
-    text +=
-        format("  %s: off by %.3f at first, then %.3f on average with deviation %.4f %s (",
-               axis_name(axis), shown(error.initial.deviation, axis), shown(error.final.mean, axis),
-               shown(error.final.deviation, axis), axis < 3 ? "mm" : "deg") +
-        ratio_text(error) + ")\n";
-  }
+  text += errors_text(s);
   text += format("  distance from the goal where done: mean %.3f, p99 %.3f, max %.3f mm\n",
                  1e3 * s.error_norm_m.mean, 1e3 * s.error_norms_m.p99, 1e3 * s.error_norms_m.max);
   text +=
@@ -102,6 +116,7 @@ Summary summarise(const Task& task, const Candidate& candidate) {
     forces_N.push_back(result.contact_force_N_max);
     durations_s.push_back(result.duration_s);
     if (!result.done) continue;
+    ++summary.done;
     norms_m.push_back(result.error->head<3>().norm());
     for (std::size_t axis = 0; axis < 6; ++axis) {
       initial[axis].push_back(run.trial.offset[static_cast<int>(axis)]);

@@ -55,6 +55,7 @@ struct Summary {
   Rate success;
   std::size_t stopped = 0;
   std::size_t done_but_wrong = 0;
+  std::size_t done = 0;                        ///< that `errors` are of
   std::vector<RateWithin> within;              ///< 2, 3 and c_p, ascending; or the bounds
   Rate promised;                               ///< of the last of these, see within_promise()
   bool tilts = false;                          ///< some world is tilted

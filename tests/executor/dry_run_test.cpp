@@ -11,6 +11,7 @@
 
 #include "executor/dry_run/dry_run_report.h"
 #include "executor/dry_run/slow_down.h"
+#include "shared/base/text.h"
 #include "shared/motion/motion_profile.h"
 #include "tests/executor/bench.h"
 #include "tests/support/hand_made.h"
@@ -252,6 +253,8 @@ TEST(DryRun, TheTableAndTheJsonTellTheSame) {
   const std::string table = to_table(run, cell);
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4);
   EXPECT_NE(table.find("   8.7 %"), std::string::npos) << table;
+  const std::string margin = format("%.4f m ", json["steps"][1]["limit_margin"].get<double>());
+  EXPECT_NE(table.find(margin), std::string::npos) << table;
 }
 
 TEST(DryRun, AGantryCannotYieldInRotation) {

@@ -94,6 +94,9 @@ TEST(Budget, TheMoveLimitIsAReasonOfItsOwn) {
       << report.reason;
   EXPECT_FALSE(report.plan.has_value());
   EXPECT_GE(moves_of(report), 100U);
+  const PlanReport single = within_moves(1, 1);
+  EXPECT_NE(single.reason.find("no path within 1 simulated move ("), std::string::npos)
+      << single.reason;
 }
 
 TEST(Budget, TheMoveLimitStrikesInTheSamePlaceAtAnyNumberOfThreads) {

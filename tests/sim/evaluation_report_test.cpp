@@ -115,6 +115,21 @@ TEST(EvaluationSummary, ErrorsAreThoseOfRunsThatWereDone) {
   EXPECT_EQ(summary.contact_force_N.p50, 30.0);
 }
 
+TEST(EvaluationSummary, OneRunIsOneRunAndHasNoDeviation) {
+  Evaluation evaluation = small_evaluation();
+  auto& runs = evaluation.candidates[0].runs;
+  runs.erase(std::next(runs.begin()), runs.end());
+  const std::string text = describe(evaluation);
+  EXPECT_NE(text.find("x: off by 10.000 at first, then 0.100 mm\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("deviation"), std::string::npos) << text;
+  const std::string html = evaluation_html(evaluation);
+  EXPECT_NE(html.find(">1 run, seed"), std::string::npos);
+  EXPECT_EQ(html.find("0.0000 mm"), std::string::npos);
+  // Of two that began alike no ratio can be told.
+  const std::string several = describe(small_evaluation());
+  EXPECT_EQ(several.find("()"), std::string::npos) << several;
+}
+
 TEST(EvaluationSummary, ABreakdownPutsEachRunInItsCell) {
   Evaluation evaluation = small_evaluation();
   evaluation.by = {parse_bins("friction=0.05:0.65:3"), parse_bins("distance=0:4:2")};
