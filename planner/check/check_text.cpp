@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <cmath>
 #include <string>
 
 #include "planner/check/task_check.h"
@@ -12,8 +13,14 @@ namespace {
 
 constexpr std::size_t kListedParts = 12;
 
+/// Plain digits, as many as four or as the number has.
+std::string mm(double length_m) {
+  const double length_mm = 1e3 * length_m;
+  return format(std::abs(length_mm) < 9999.5 ? "%.4g" : "%.0f", length_mm);
+}
+
 std::string mm(const Vector3& v) {
-  return format("(%.4g, %.4g, %.4g)", 1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z());
+  return "(" + mm(v.x()) + ", " + mm(v.y()) + ", " + mm(v.z()) + ")";
 }
 
 std::string shapes_text(const std::vector<Shape>& shapes) {
@@ -40,13 +47,18 @@ std::string touches_text(const Task& task, const Start& start, const StartCheck&
       continue;
     }
     text += direction.touch->shape + ", at " + mm(direction.touch->tool.position_m);
-    if (!direction.touch->in_legs) text += ", which no straight legs lead to";
+    text += way_text(*direction.touch, start);
   }
   return text;
 }
 
-std::string room_text(const std::optional<double>& way_m) {
-  return way_m ? format("%.3g", 1e3 * *way_m) : "open";
+std::string room_text(const GoalRoom& room) {
+  if (!room.down_m && !room.up_m) return "open both ways";
+  const auto side = [&](const char* sign, const std::optional<double>& way_m) {
+    return (way_m ? format("%.3g", 1e3 * *way_m) : "open") + " towards " + sign +
+           axis_name(room.axis);
+  };
+  return side("-", room.down_m) + ", " + side("+", room.up_m);
 }
 
 }  // namespace
@@ -77,8 +89,7 @@ std::string check_text(const std::string& file, const Task& task, const TaskChec
           tolerance_text(task.goal_tolerance_m, task.goal_axes) +
           (task.inserted ? ", inserted" : "") + "\n";
   for (const GoalRoom& room : check.goal_room) {
-    text += format("          room along %s: -%s, +%s\n", axis_name(room.axis),
-                   room_text(room.down_m).c_str(), room_text(room.up_m).c_str());
+    text += format("          room along %s: ", axis_name(room.axis)) + room_text(room) + "\n";
   }
   for (const StartCheck& checked : check.starts) {
     for (const Start& start : task.starts) {

@@ -70,14 +70,26 @@ bool stands_in(const Shape& shape, const Shape& other) {
   return shape.kind != Shape::Kind::kSolid && other.solid->place(at_m).distance_m < 0.0;
 }
 
+// Boxes of a ring, whose neighbours may reach into each other; walls that are numbered by hand are
+// fewer.
+constexpr std::ptrdiff_t kRingSegmentsMin = 8;
+
+bool of_one_ring(const Task& task, const Shape& one, const Shape& other) {
+  const std::string name = piece_of(one.name);
+  if (name != piece_of(other.name)) return false;
+  return std::count_if(task.environment.begin(), task.environment.end(), [&](const Shape& shape) {
+           return piece_of(shape.name) == name;
+         }) >= kRingSegmentsMin;
+}
+
 /// Two of the environment that cannot both be where they are said to be.
 void find_doubled(const Task& task, std::vector<Finding>& findings) {
   for (std::size_t i = 0; i < task.environment.size(); ++i) {
     const Shape& one = task.environment[i];
     for (std::size_t j = 0; j < i; ++j) {
       const Shape& other = task.environment[j];
-      if (piece_of(one.name) == piece_of(other.name)) continue;
       if (!stands_in(one, other) || !stands_in(other, one)) continue;
+      if (of_one_ring(task, one, other)) continue;
       findings.push_back(
           {Finding::Weight::kDoubt,
            format("environment[%zu] '%s' and environment[%zu] '%s' stand in each other, their "
@@ -128,13 +140,16 @@ void find_doubtful_goal(const Task& task, std::vector<Finding>& findings) {
 
 void find_other_doubts(const Task& task, std::vector<Finding>& findings) {
   constexpr double kForceOnMin_N = 0.2;
-  if (task.motion.thresholds.force_on_N < kForceOnMin_N) {
+  const double force_on_N = task.motion.thresholds.force_on_N;
+  if (force_on_N < kForceOnMin_N) {
     findings.push_back(
         {Finding::Weight::kDoubt,
          format(
              "contact.force_on_N = %g is within the noise of most force sensors: a plan takes it "
              "for a contact wherever it comes; write some newtons, in N",
-             task.motion.thresholds.force_on_N)});
+             force_on_N) +
+             (1e3 * force_on_N >= 1.0 ? format("; is it in kN? then write %g N", 1e3 * force_on_N)
+                                      : "")});
   }
   double longest_m = 0.0;
   for (const Shape& shape : task.held) longest_m = std::max(longest_m, shape.size_m.maxCoeff());
@@ -149,6 +164,29 @@ void find_other_doubts(const Task& task, std::vector<Finding>& findings) {
                         format("goal.tolerance_m = %g is less than an arm is good for: nothing "
                                "ends within less than some 10 um of the goal",
                                task.goal_tolerance_m)});
+  }
+}
+
+/// A place that no arm gets to, the goal's or a start's.
+void find_far_places(const Task& task, std::vector<Finding>& findings) {
+  const auto far = [&](const std::string& what, const Vector3& p) {
+    const double away_m = p.norm();
+    if (away_m <= kEnvironmentMax_m) return false;
+    const auto in = [&](const char* unit, double per_m) {
+      const Vector3 meant_m = p / per_m;
+      return format("%s (%.4g, %.4g, %.4g m)", unit, meant_m.x(), meant_m.y(), meant_m.z());
+    };
+    std::string text = what + format(
+                                  " at (%.4g, %.4g, %.4g) m is %.4g m away from the task frame, "
+                                  "where no arm gets: did you mean ",
+                                  p.x(), p.y(), p.z(), away_m);
+    text += in("mm", 1e3) + " or " + in("cm", 1e2) + "? places are in m";
+    findings.push_back({Finding::Weight::kDoubt, std::move(text)});
+    return true;
+  };
+  if (far("the goal", task.goal.position_m)) return;
+  for (const Start& start : task.starts) {
+    if (far("start '" + start.name + "'", start.pose.position_m)) return;
   }
 }
 
@@ -191,6 +229,7 @@ std::vector<Finding> doubtful_sizes(const Task& task) {
                 "origin is the part's tip, not in the task frame",
                 nearest_m)});
   }
+  find_far_places(task, findings);
   find_doubled(task, findings);
   find_doubtful_stiffness(task, findings);
   find_other_doubts(task, findings);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "planner/search/guide_moves.h"
+#include "shared/base/text.h"
 #include "shared/ports/collision_depth.h"
 
 namespace tenon::planner {
@@ -117,7 +118,7 @@ class Sweeps {
     const bool nearer = known == touches_.end() || touch.from_start_m < known->from_start_m;
     if (!nearer && known->in_legs) return;
     if (!whole_spread_touches(touch)) return;
-    touch.in_legs = legs_lead_to(moved(touch.tool, axis_, -sign * kSamePlace_m));
+    touch.in_legs = legs_lead_to(moved(touch.tool, axis_, -sign * kSamePlace_m), touch.legs);
     if (known != touches_.end() && (known->in_legs == touch.in_legs ? !nearer : known->in_legs)) {
       return;
     }
@@ -129,8 +130,8 @@ class Sweeps {
     }
   }
 
-  /// In any order of the axes.
-  [[nodiscard]] bool legs_lead_to(const Pose& to) {
+  /// In any order of the axes. @param legs gets that order
+  [[nodiscard]] bool legs_lead_to(const Pose& to, std::string& legs) {
     const Vector3 way_m = to.position_m - start_.pose.position_m;
     std::array<int, 3> order = {0, 1, 2};
     do {
@@ -142,7 +143,12 @@ class Sweeps {
         at = moved(at, axis, way_m[axis]);
         return true;
       };
-      if (std::all_of(order.begin(), order.end(), leg)) return true;
+      if (!std::all_of(order.begin(), order.end(), leg)) continue;
+      for (const int axis : order) {
+        if (way_m[axis] == 0.0) continue;
+        legs.append(legs.empty() ? "" : ", ").append(axis_name(axis));
+      }
+      return true;
     } while (std::next_permutation(order.begin(), order.end()));
     return false;
   }

@@ -20,6 +20,7 @@ struct Touch {
   /// Whether legs along the coordinates, each of them once, lead there from the start. Else only a
   /// way around something does, or none.
   bool in_legs = false;
+  std::string legs;  ///< their axes in order, "z, x"; of those alone that are any way
 };
 
 /// The touch nearest to a start in each direction along an uncertain translation, of those that

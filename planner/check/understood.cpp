@@ -44,6 +44,13 @@ std::string spread_text(const Start& start, const Task& task) {
   return text.empty() ? "nothing uncertain" : text;
 }
 
+std::string way_text(const Touch& touch, const Start& start) {
+  if (!touch.in_legs) return ", which no straight legs lead to";
+  const double ahead_m = touch.tool.position_m[touch.axis] - start.pose.position_m[touch.axis];
+  if (touch.sign * ahead_m >= 0.0) return {};
+  return ", behind the start: by way of legs along " + touch.legs;
+}
+
 std::vector<Direction> directions_of(const Task& task, const Start& start,
                                      const StartCheck& checked) {
   std::vector<Direction> directions;

@@ -34,6 +34,10 @@ struct Direction {
   const Touch* touch = nullptr;  ///< of the check; none where nothing is in reach
 };
 
+/// How the tool gets to a touch that is not straight ahead: ", by way of legs along z, x" where it
+/// lies behind the start, ", which no straight legs lead to" where only a way around does.
+[[nodiscard]] std::string way_text(const Touch& touch, const Start& start);
+
 /// Both ways along each uncertain translation. None where the start or a particle is not free.
 [[nodiscard]] std::vector<Direction> directions_of(const Task& task, const Start& start,
                                                    const StartCheck& checked);

@@ -98,8 +98,7 @@ std::string touch_rows(const Task& task, const Start& start, const StartCheck& c
     }
     const Touch& touch = *direction.touch;
     rows += row(
-        {way, drawing::escaped(touch.shape),
-         mm(touch.tool.position_m) + (touch.in_legs ? "" : ", which no straight legs lead to")});
+        {way, drawing::escaped(touch.shape), mm(touch.tool.position_m) + way_text(touch, start)});
   }
   return rows;
 }

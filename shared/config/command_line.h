@@ -33,6 +33,19 @@ inline std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// "check" where --check was meant: taken for the file, so that the file has no place any more.
+inline std::string flag_meant(const CLI::App& app) {
+  for (const CLI::Option* argument : app.get_options()) {
+    if (!argument->get_positional() || argument->count() == 0) continue;
+    const std::string word = argument->results().front();
+    const std::string flag = "--" + word;
+    if (app.get_option_no_throw(flag) == nullptr) continue;
+    std::string line = word;
+    return line.append(": is no subcommand; did you mean ").append(flag).append("? See --help");
+  }
+  return {};
+}
+
 /// What a word that no argument takes was meant as: a subcommand, or the file of an option.
 inline std::string argument_meant(const CLI::App& app, const std::string& word) {
   std::vector<std::string> names;
@@ -58,6 +71,8 @@ inline std::string usage_error(const CLI::App& app, const CLI::ParseError& error
     if (!word.starts_with("--")) {
       const std::string meant = argument_meant(app, word);
       if (!meant.empty()) return word + meant;
+      std::string flag = flag_meant(app);
+      if (!flag.empty()) return flag;
       continue;
     }
     const std::string name = word.substr(0, word.find('='));

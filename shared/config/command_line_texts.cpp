@@ -79,7 +79,7 @@ std::string value_of(const CLI::Option& option) {
   std::string type = takes(option);
   const std::size_t colon = type.find(':');
   if (colon == std::string::npos || colon + 1 == type.size()) return type;
-  const std::string value = type.substr(colon + 1);
+  std::string value = type.substr(colon + 1);
   if (value.front() == '[') return type.substr(0, colon) + " in " + value;
   if (value.front() == '{' && value.back() == '}') {
     std::string words = value.substr(1, value.size() - 2);

@@ -1,9 +1,11 @@
 #include "shared/config/load_starts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "shared/base/text.h"
 #include "shared/math/pose.h"
@@ -12,6 +14,7 @@ namespace tenon::config {
 namespace {
 
 constexpr std::size_t kStartsMax = 200;
+constexpr double kSamePlace = 1e-9;                      // m or rad
 constexpr double kBoundOverSigma = std::numbers::sqrt3;  // of a uniform distribution
 
 /// One number for each search coordinate of a kind, in the order x y z or rx ry rz.
@@ -25,12 +28,18 @@ void read_errors(const Map& map, const char* key, int first_axis, CoordinateMask
     names.append(" ").append(kAxisNames[axis]);
   }
   if (count == 0) {
-    if (const auto given = map.find(key)) given->refuse("no search coordinate has this unit");
+    if (const auto given = map.find(key)) {
+      given->refuse("no search coordinate has this unit: must have none");
+    }
     return;
+  }
+  if (!map.find(key)) {
+    map.value().refuse(format("the required key %s is missing, a list of %zu, for", key, count) +
+                       names);
   }
   const Value given = map.at(key);
   if (const std::size_t written = given.entries_written(); written != 0 && written != count) {
-    given.refuse(format("has %zu entries, must have %zu, for", written, count) + names);
+    given.refuse(Value::entries_text(written) + format(", must have %zu, for", count) + names);
   }
   const std::vector<Value> values = given.list(count, count);
   auto next = values.begin();
@@ -73,16 +82,33 @@ Start read_start(const Value& value, const Task& task, std::set<std::string>& na
   read_errors(map, uniform ? "uniform_m" : "sigma_m", 0, task.coordinates, start.sigma);
   read_errors(map, uniform ? "uniform_rad" : "sigma_rad", 3, task.coordinates, start.sigma);
   if (uniform) start.sigma /= kBoundOverSigma;
-
-  // Nothing moves the tool along the other axes.
-  const Vector6 way = displacement_between(start.pose, task.goal);
-  for (int axis = 0; axis < 6; ++axis) {
-    if (has(task.coordinates, axis) || std::abs(way[axis]) <= 1e-9) continue;
-    map.at("pose").refuse("is " + std::to_string(std::abs(way[axis])) + (axis < 3 ? " m" : " rad") +
-                          " off the goal along " + axis_name(axis) +
-                          ", which is not a search coordinate");
-  }
   return start;
+}
+
+/// Nothing moves the tool along axes that are no search coordinates. Where all of several starts
+/// agree, the goal is what is off.
+/// @param goal its pose
+void check_ways(const std::vector<Value>& starts, const Value& goal, const Task& task) {
+  for (int axis = 0; axis < 6; ++axis) {
+    if (has(task.coordinates, axis)) continue;
+    std::vector<double> ways;
+    ways.reserve(task.starts.size());
+    for (const Start& start : task.starts) {
+      ways.push_back(displacement_between(start.pose, task.goal)[axis]);
+    }
+    const auto off = std::find_if(ways.begin(), ways.end(),
+                                  [](double way) { return std::abs(way) > kSamePlace; });
+    if (off == ways.end()) continue;
+    const double least = *std::min_element(ways.begin(), ways.end());
+    const double most = *std::max_element(ways.begin(), ways.end());
+    const auto refuse = [&](const Value& pose, const char* whom) {
+      pose.refuse(format("is %f %s off %s along %s, which is not a search coordinate",
+                         std::abs(*off), axis_unit(axis), whom, axis_name(axis)));
+    };
+    if (starts.size() > 1 && most - least <= kSamePlace) refuse(goal, "all starts");
+    const auto index = static_cast<std::size_t>(off - ways.begin());
+    refuse(start_map(starts[index]).at("pose"), "the goal");
+  }
 }
 
 }  // namespace
@@ -97,11 +123,12 @@ CoordinateMask read_axes(const Value& value) {
   return static_cast<CoordinateMask>(mask);
 }
 
-void read_starts(const Value& value, Task& task) {
+void read_starts(const Value& value, const Value& goal, Task& task) {
   std::set<std::string> names;
   const std::vector<Value> starts = value.list(1, kStartsMax);
   task.errors = distribution_of(starts.front());
   for (const Value& start : starts) task.starts.push_back(read_start(start, task, names));
+  check_ways(starts, goal, task);
 }
 
 void read_reach(const Map& task_file, Task& task) {

@@ -13,7 +13,7 @@ namespace tenon::config {
 
 /// All starts, whose keys say how errors are distributed: the first one's for all. After the goal
 /// and the search coordinates.
-void read_starts(const Value& value, Task& task);
+void read_starts(const Value& value, const Value& goal, Task& task);
 
 /// How far the errors that a plan has to hold reach. After the starts.
 void read_reach(const Map& task_file, Task& task);

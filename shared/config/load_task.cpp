@@ -102,6 +102,14 @@ SpeedLimits read_speeds(const Value& value) {
   return v;
 }
 
+/// Of a force that no sensor tells from none, and that a contact would be in the larger unit.
+std::string kilonewtons_hint(double force_on_N) {
+  constexpr double kForceOnMin_N = 0.2;
+  const double meant_N = 1e3 * force_on_N;
+  if (force_on_N >= kForceOnMin_N || meant_N < 1.0) return {};
+  return format("; is force_on_N in kN? then write %g N", meant_N);
+}
+
 /// Thresholds, debounce and limits; refused where they break the rules of a guarded move. After
 /// read_compliance().
 void read_contact(const Value& value, Task& task) {
@@ -133,7 +141,7 @@ void read_contact(const Value& value, Task& task) {
       map.find("torque_on_Nm") ? kAllAxes : static_cast<std::uint8_t>(kAllAxes & ~rotations);
   if (const auto rule =
           broken_rule(t, task.force_limit_N, task.motion.speeds.acceleration_mps2, conditions)) {
-    value.refuse(*rule);
+    value.refuse(*rule + kilonewtons_hint(t.force_on_N));
   }
 }
 
@@ -180,14 +188,22 @@ void read_search(const Value& value, Task& task) {
 // (sim/experiments). What a cell's calibration is good to, whoever has measured it says in the
 // task.
 constexpr double kCalibrated_rad = 3e-3;
+constexpr Bounds kFriction = {0.0, 2.0};
 
 void read_physics(const Value& value, Task& task) {
   const Map map(value, {"friction", "contact_stiffness_Npm", "oversize_m", "tilt_rad",
                         "sensor_error_m", "rollout_step_s"});
   const Map friction(map.at("friction"), {"low", "nominal", "high"});
-  task.friction.nominal = friction.number("nominal", {0.0, 2.0});
-  task.friction.low = friction.number("low", {0.0, task.friction.nominal});
-  task.friction.high = friction.number("high", {task.friction.nominal, 2.0});
+  task.friction.nominal = friction.number("nominal", kFriction);
+  const double nominal = task.friction.nominal;
+  task.friction.low = friction.number("low", kFriction);
+  if (task.friction.low > nominal) {
+    friction.at("low").refuse_value(format("in [0, %g]: low, nominal and high ascend", nominal));
+  }
+  task.friction.high = friction.number("high", kFriction);
+  if (task.friction.high < nominal) {
+    friction.at("high").refuse_value(format("in [%g, 2]: low, nominal and high ascend", nominal));
+  }
   task.contact_stiffness_Npm = map.number("contact_stiffness_Npm", {1e2, 1e8});
   map.optional_number("oversize_m", {0.0, 0.01}, task.oversize_m);
   task.tilt_rad = kCalibrated_rad;
@@ -270,7 +286,7 @@ Task load_task(const std::filesystem::path& name) {
   task.hash = fnv1a_64((variant ? text + "#" + *variant : text) + shapes.contents());
 
   read_goal(map.at("goal"), task);
-  config::read_starts(map.at("starts"), task);
+  config::read_starts(map.at("starts"), *map.at("goal").peek("pose"), task);
   if (const auto about = map.find("error_about_m")) {
     task.error_about_m = about->vector({-kSizeMax_m, kSizeMax_m});
   }

@@ -32,7 +32,7 @@ struct Unit {
 
 // The longer ends first: what ends in _mps does not end in _s. Bounds of lengths are metres that no
 // hand or arm reaches, so that whatever is beyond them is in millimetres.
-constexpr std::array<Unit, 10> kUnits = {
+constexpr std::array<Unit, 11> kUnits = {
     {{"_m2", "m^2", "mm^2", 1e6},
      {"_mps", "m/s", "mm/s", 1e3},
      {"_mps2", "m/s^2", "mm/s^2", 1e3},
@@ -40,14 +40,16 @@ constexpr std::array<Unit, 10> kUnits = {
      {"_m", "m", "mm", 1e3, 1.0},
      {"_s", "s", "ms", 1e3},
      {"_kg", "kg", "g", 1e3},
+     {"_N", "N", "mN", 1e3},
      {"_Nm", "Nm", "Nmm", 1e3},
      {"_radps", "rad/s", "degrees/s", 180.0 / std::numbers::pi},
      {"_rad", "rad", "degrees", 180.0 / std::numbers::pi}}};
 
 // What other formats call it, and what people say.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kOtherWords = {
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOtherWords = {
     {{"filename", "file"},
      {"path", "file"},
+     {"mesh_file", "mesh"},
      {"height_m", "length_m"},
      {"height", "length_m"},
      {"xyz", "position_m"},
@@ -85,6 +87,11 @@ std::string writing_hint(std::string_view text) {
 }
 
 std::string unit_hint(std::string_view path, double number, const Bounds& bounds) {
+  constexpr double kPercent = 100.0;
+  const bool friction = path.find("friction.") != std::string_view::npos;
+  if (friction && number > 2.0 * bounds.high && bounds.holds(number / kPercent)) {
+    return "; is it in percent? then write " + format("%g", number / kPercent);
+  }
   const Unit* unit = unit_of(path);
   if (unit == nullptr || !std::isfinite(number)) return {};
   const double meant = number / unit->per_unit;
@@ -141,18 +148,20 @@ struct Forgotten {
   std::string_view hint;
 };
 
-constexpr std::array<Forgotten, 5> kForgotten = {
+constexpr std::array<Forgotten, 6> kForgotten = {
     {{"end of map flow",
       "; here or above, a {...} is not closed, or has no comma between two of its keys"},
      {"end of sequence flow",
       "; here or above, a [...] is not closed, or has no comma between two of its entries"},
+     {"illegal flow end",
+      "; here or above, a bracket or a brace is missing: a } or ] closes what none has opened"},
      {"end of map",
       "; here or above, a key is indented unlike its neighbours, a dash is missing before it, or a "
       "bracket is too many"},
      {"end of sequence",
       "; here or above, an entry of a list is indented unlike the others, or its dash is missing"},
      {"illegal map value",
-      "; here or above, an indent differs, a comment lacks its #, or a key has = for its colon"}}};
+      "; here or above, an indent differs, a comment lacks its #, a key has = for its colon, or a { is missing"}}};
 
 }  // namespace
 

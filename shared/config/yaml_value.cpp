@@ -25,6 +25,7 @@ constexpr double kRotationMax_rad = 3.1415926535897932;
 constexpr std::size_t kShownMax = 80;  // of a value or a key in a message, bytes
 
 const char* kind_of(const YAML::Node& node) {
+  if (node.IsSequence() && node.size() == 0) return "empty";
   if (node.IsMap()) return "a mapping";
   if (node.IsSequence()) return "a list";
   return node.IsScalar() ? "a single value" : "empty";
@@ -153,10 +154,11 @@ std::vector<Value> Value::list(std::size_t at_least, std::size_t at_most) const 
   const std::string count = at_least == at_most
                                 ? std::to_string(at_least)
                                 : std::to_string(at_least) + " to " + std::to_string(at_most);
-  if (!node_.IsSequence()) refuse_value("a list of " + count);
+  const bool empty = node_.size() == 0 && at_least > 0;  // by [] or by nothing at all
+  if (!node_.IsSequence() || empty) refuse_value("a list of " + count);
   if (node_.size() < at_least || node_.size() > at_most) {
-    refuse("has " + std::to_string(node_.size()) + (node_.size() == 1 ? " entry" : " entries") +
-           ", must have " + count + (at_least == at_most ? list_hint(node_.size(), at_least) : ""));
+    refuse(entries_text(node_.size()) + ", must have " + count +
+           (at_least == at_most ? list_hint(node_.size(), at_least) : ""));
   }
   std::vector<Value> values;
   values.reserve(node_.size());

@@ -73,6 +73,10 @@ class Value {
   [[nodiscard]] std::size_t entries_written() const {
     return node_.IsSequence() ? node_.size() : 0;
   }
+  /// "has 1 entry", "has 3 entries".
+  [[nodiscard]] static std::string entries_text(std::size_t count) {
+    return "has " + std::to_string(count) + (count == 1 ? " entry" : " entries");
+  }
   /// The keys of a mapping whose keys are names, each once, in the file's order.
   [[nodiscard]] std::vector<std::string> keys() const;
 

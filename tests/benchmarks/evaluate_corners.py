@@ -58,9 +58,15 @@ def planned_for_a_cell(task, start, stem, arguments):
     return None, reasons
 
 
+def name_of(task):
+    """"peg#clearance_0.5mm" of "tasks/peg.yaml#clearance_0.5mm", whose last dot is the variant's."""
+    file, mark, variant = task.partition("#")
+    return pathlib.Path(file).stem + mark + variant
+
+
 def measure(task, start, arguments):
     """Prints a line a corner; how many corners were run, how many hold, and how many runs were done but wrong."""
-    name = pathlib.Path(task).stem + (f"#{task.partition('#')[2]}" if "#" in task else "")
+    name = name_of(task)
     stem = arguments.out / f"{name.replace('#', '_')}_{start}"
     cell, reasons = planned_for_a_cell(task, start, stem, arguments)
     if cell is None:

@@ -30,6 +30,7 @@ std::vector<std::string> check_command(const ScratchFolder& folder, const YAML::
                                        const std::string& task) {
   std::vector<std::string> command = {executable("tenon-plan")};
   if (!broken["without_check"]) command.emplace_back("--check");
+  for (const YAML::Node& word : broken["before"]) command.push_back(word.as<std::string>());
   if (broken["file"]) {
     command.push_back(in_tree(broken["file"].as<std::string>()));
   } else if (broken["plan"]) {
@@ -108,6 +109,24 @@ TEST(BrokenTasks, ThePageOfACheckHoldsAllThatItsLinesSay) {
       run(folder, {executable("tenon-plan"), "--check", file, "--report", file});
   EXPECT_EQ(over_itself.status, 2);
   EXPECT_EQ(folder.get("task.yaml"), document["task"].as<std::string>());
+}
+
+TEST(BrokenTasks, WhatIsOpenAndWhatLiesBehindTheStartIsToldInWords) {
+  const ScratchFolder folder;
+  const std::string planner = executable("tenon-plan");
+  const Ended hole =
+      run(folder, {planner, "--check", in_tree("planner/tasks/peg_in_hole_3d.yaml")});
+  EXPECT_NE(hole.out.find("room along z: 9.96 towards -z, open towards +z\n"), std::string::npos)
+      << hole.out;
+  EXPECT_NE(hole.out.find("touches along +x: left, at (-140, 0, 10), behind the start: by way of "
+                          "legs along x, z\n"),
+            std::string::npos)
+      << hole.out;
+  auto far = YAML::LoadFile(in_tree("tests/planning/broken_tasks.yaml"))["task"].as<std::string>();
+  far.replace(far.find("[0, 0, 0.005]"), std::string("[0, 0, 0.005]").size(), "[25, -15, 0.5]");
+  const Ended alone = run(folder, {planner, "--check", folder.put("far.yaml", far)});
+  EXPECT_NE(alone.out.find("goal      (25000, -15000, 500), to"), std::string::npos) << alone.out;
+  EXPECT_NE(alone.out.find("room along x: open both ways\n"), std::string::npos) << alone.out;
 }
 
 TEST(BrokenTasks, NoPushThatIsSaidToTouchGoesThroughAWall) {

@@ -212,7 +212,7 @@ TEST(TaskVariant, RefusesEachBadLineWithItsPlace) {
        "search, physics, variants; did you mean search?"},
       {"{w1: 3}", "{w1: 3, w1: 4}", "#fine", ":20: variants.fine.search.w1: is given twice"},
       {"sigma_m: [0.001, 0.002]", "sigma_m: [0.001]", "#fine",
-       ":19: variants.fine.starts[0].sigma_m: has 1 entries, must have 2, for x z"},
+       ":19: variants.fine.starts[0].sigma_m: has 1 entry, must have 2, for x z"},
       {"      left: {", "      middle: {", "#tight",
        ":23: variants.tight.environment.middle: is not a name in the list environment"},
       {"      left: {", "      right: {", "#tight",
