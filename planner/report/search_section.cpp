@@ -52,9 +52,9 @@ std::string found(const SearchStory& story) {
                        "the optimum.",
                        least, story.bound)
               : "and no bound is proven.") +
-         " The search adds up moves that it simulated one by one; the plan's own cost is that of "
-         "the "
-         "certified chain, run from start to end at the plan's speeds, and may differ a little.";
+         " The search adds up moves that it simulated one by one, where nothing turns in coarser "
+         "time steps; the plan's own cost is that of the certified chain, run from start to end at "
+         "the plan's speeds, and may differ a little.";
 }
 
 std::string table_of(const std::string& titles, const std::string& rows) {
