@@ -222,6 +222,8 @@ int tell(const Arguments& a, const planner::PlanReport& report, const Task& task
     write_file(a.report, planner::html_report(report, certain));
   }
   if (a.json != "-") std::fputs(planner::summary(report, task, a.output).c_str(), stdout);
+  const std::string doubt = planner::doubt_text(report.validation, task);
+  if (!doubt.empty()) std::fprintf(stderr, "tenon-plan: warning: %s\n", doubt.c_str());
   return 0;
 }
 

@@ -54,6 +54,8 @@ std::string badges(const ReportData& data, Made made) {
     list += badge(data.validation.at_goal() == data.validation.draws.size(),
                   "Repeated for this page: " + estimate_text(data.validation, data.task));
   }
+  const std::string doubt = doubt_text(data.validation, data.task);
+  if (!doubt.empty()) list += badge(false, doubt);
   return "<ul class='badges'>\n" + list + "</ul>\n";
 }
 

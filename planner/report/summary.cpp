@@ -14,6 +14,9 @@
 namespace tenon::planner {
 namespace {
 
+// Of the draws within reach, at the goal: what a plan is to be relied on for.
+constexpr double kReliable = 0.95;
+
 std::string displacement_text(const Plan& plan, const Vector6& displacement) {
   std::string text;
   for (int axis = 0; axis < 6; ++axis) {
@@ -131,6 +134,22 @@ std::string estimate_text(const Validation& validation, const Task& task) {
                 validation.at_goal_within(task.particle_sigmas),
                 validation.within(task.particle_sigmas)) +
          within_text(task, task.particle_sigmas);
+}
+
+std::string doubt_text(const Validation& validation, const Task& task) {
+  const std::size_t within = validation.within(task.particle_sigmas);
+  const std::size_t good = validation.at_goal_within(task.particle_sigmas);
+  if (within == 0 || wilson_interval(good, within).high >= kReliable) return {};
+  std::string text = format("only %zu of %zu random starts ", good, within) +
+                     within_text(task, task.particle_sigmas) + " end at the goal";
+  const double held_rad = validation.held.tilt_rad;
+  if (!tilted_axes(task).empty() && held_rad < task.tilt_rad) {
+    text += format(
+        "; of the %.2g degrees of tilt that physics.tilt_rad allows for the plan bears "
+        "%.2g: more play at the goal helps, or a cell that is calibrated better",
+        shown(task.tilt_rad, 3), shown(held_rad, 3));
+  }
+  return text;
 }
 
 std::string corners_text(const Validation& validation, const Task& task) {

@@ -18,6 +18,10 @@ namespace tenon::planner {
 /// %), 176 of 176 within 2 sigma".
 [[nodiscard]] std::string estimate_text(const Validation& validation, const Task& task);
 
+/// Why the plan should not be relied on, where fewer than 95 % of the draws within reach can be
+/// taken to end at the goal; else empty. "only 1 of 189 random starts within 3 sigma end ..."
+[[nodiscard]] std::string doubt_text(const Validation& validation, const Task& task);
+
 /// "16 of 16 starts 2 sigma out end at the goal, at friction 0.1 and 0.6".
 [[nodiscard]] std::string corners_text(const Validation& validation, const Task& task);
 

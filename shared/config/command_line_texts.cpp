@@ -259,6 +259,29 @@ std::string subcommands_place(const CLI::App& app) {
          "  done\n";
 }
 
+/// "--can --help": an app's own, without its subcommands'.
+std::string option_words(const CLI::App& app) {
+  std::set<std::string> words;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional()) continue;
+    const std::vector<std::string> names = names_of(*option);
+    words.insert(names.begin(), names.end());
+  }
+  return strung({words.begin(), words.end()}, " ");
+}
+
+/// Sets `options` to those that may stand here: the program's own, or its subcommand's.
+std::string options_here(const CLI::App& app) {
+  std::string text = "  local options=\"" + option_words(app) + "\"\n";
+  const Apps subcommands = subcommands_of(app);
+  if (subcommands.empty()) return text;
+  text += "  if [[ $at -lt $COMP_CWORD ]]; then\n    case ${COMP_WORDS[at]} in\n";
+  for (const CLI::App* sub : subcommands) {
+    text += "    " + sub->get_name() + ") options=\"" + option_words(*sub) + "\" ;;\n";
+  }
+  return text + "    esac\n  fi\n";
+}
+
 }  // namespace
 
 std::string manual_page(const CLI::App& app, const std::string& program,
@@ -283,14 +306,12 @@ std::string manual_page(const CLI::App& app, const std::string& program,
 std::string bash_completion(const CLI::App& app, const std::string& program) {
   std::string function = "_" + program;
   std::replace(function.begin(), function.end(), '-', '_');
-  std::set<std::string> words;
   std::string cases;
   for (const CLI::Option* option : all_options(app)) {
-    const std::vector<std::string> names = names_of(*option);
-    words.insert(names.begin(), names.end());
     if (const std::string values = choices(*option); !values.empty()) {
-      cases += "    " + strung(names, "|") + ")\n      COMPREPLY=($(compgen -P \"$glued\" -W \"" +
-               values + "\" -- \"$word\"))\n      return\n      ;;\n";
+      cases += "    " + strung(names_of(*option), "|") +
+               ")\n      COMPREPLY=($(compgen -P \"$glued\" -W \"" + values +
+               "\" -- \"$word\"))\n      return\n      ;;\n";
     }
   }
   std::vector<std::string> subcommands;
@@ -298,8 +319,9 @@ std::string bash_completion(const CLI::App& app, const std::string& program) {
   std::string text = function + "() {\n" + kWordAndOption;
   if (!cases.empty()) text += "  case $option in\n" + cases + "  esac\n";
   if (!subcommands.empty()) text += subcommands_place(app);
-  text += "  if [[ -z $glued && $word == -* ]]; then\n    COMPREPLY=($(compgen -W \"" +
-          strung({words.begin(), words.end()}, " ") + "\" -- \"$word\"))\n";
+  text += options_here(app) +
+          "  if [[ -z $glued && $word == -* ]]; then\n"
+          "    COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n";
   if (!subcommands.empty()) {
     text += "  elif [[ $at -eq $COMP_CWORD ]]; then\n    COMPREPLY=($(compgen -W \"" +
             strung(subcommands, " ") + "\" -- \"$word\"))\n";

@@ -34,6 +34,9 @@ COMPLETIONS = [
     ("tenon-monitor", ["--lines", "--lcm-url", "none", "e"], {"export"}),
     ("tenon-plan", ["my"], {"my task.yaml"}),
     ("tenon-can", ["scan", "my"], {"my task.yaml"}),
+    ("tenon-can", ["--c"], {"--can"}),
+    ("tenon-can", ["--can", "my", "check", "--"], {"--eds", "--help"}),
+    ("tenon-monitor", ["export", "--"], {"--csv", "--help", "--mcap", "--run"}),
 ]
 
 

@@ -85,6 +85,28 @@ TEST(Report, ABaselinesDropIsExplainedByTheDraws) {
   EXPECT_EQ(drops.front().why, "contact with low begins");
 }
 
+TEST(Report, WarnsOfAPlanThatMissesFromMoreThanAFewStarts) {
+  Task task = room_task();
+  const PlanReport report = planned(task);
+  ASSERT_EQ(report.status, PlanStatus::kPlanned);
+  Validation validation = report.validation;
+  for (Draw& draw : validation.draws) {
+    draw.sigmas_out = 1.0;
+    draw.at_goal = true;
+  }
+  EXPECT_EQ(doubt_text(validation, task), "");
+  for (std::size_t i = 0; i + 1 < validation.draws.size(); ++i) validation.draws[i].at_goal = false;
+  const std::string one = "only 1 of " + std::to_string(validation.draws.size()) + " random starts";
+  EXPECT_EQ(doubt_text(validation, task).rfind(one, 0), 0U) << doubt_text(validation, task);
+  EXPECT_EQ(doubt_text(validation, task).find("degrees"), std::string::npos);
+
+  task.tilt_rad = 3e-3;
+  validation.held.tilt_rad = 0.0;
+  EXPECT_NE(doubt_text(validation, task).find("0.17 degrees"), std::string::npos);
+  const std::string html = html_report(*report.plan, task, report.certification, validation);
+  EXPECT_NE(html.find(one), std::string::npos);
+}
+
 TEST(Report, TheStepTableNamesEveryStepAndItsEnd) {
   const PlanReport report = planned(room_task());
   const std::string table = step_table(*report.plan);
