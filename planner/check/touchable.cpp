@@ -157,6 +157,7 @@ class Sweeps {
     const double within_m = task_.attractor_ratio * spread_m(axis_);
     // As far back as the farthest of the spread would begin.
     const Pose back = moved(touch.tool, axis_, -touch.sign * (within_m + kSamePlace_m));
+    if (probe_.way_to_touch(back, axis_, touch.sign, within_m)) return false;  // something else
     for (int corner = 0; corner < 8; ++corner) {
       Pose from = back;
       for (int other = 0; other < 3; ++other) {
