@@ -129,6 +129,23 @@ TEST(BrokenTasks, WhatIsOpenAndWhatLiesBehindTheStartIsToldInWords) {
   EXPECT_NE(alone.out.find("room along x: open both ways\n"), std::string::npos) << alone.out;
 }
 
+// 0.45 m out the part is not in the pocket, whose sides are 1 mm away: it meets the block's outer
+// side.
+TEST(BrokenTasks, ASpreadThatIsLargerThanAPocketTouchesNothingInIt) {
+  const ScratchFolder folder;
+  auto wide = YAML::LoadFile(in_tree("tests/planning/broken_tasks.yaml"))["task"].as<std::string>();
+  const auto put = [&wide](const std::string& what, const std::string& instead) {
+    wide.replace(wide.find(what), what.size(), instead);
+  };
+  put("[0.01, -0.02, 0.10]", "[0, 0, 0.10]");
+  put("[0.008, 0.008, 0.008]", "[0.15, 0.003, 0.002]");
+  const Ended ended =
+      run(folder, {executable("tenon-plan"), "--check", folder.put("wide.yaml", wide)});
+  EXPECT_NE(ended.out.find("touches along +x: left, at (-120, 0, 5), behind the start"),
+            std::string::npos)
+      << ended.out;
+}
+
 TEST(BrokenTasks, NoPushThatIsSaidToTouchGoesThroughAWall) {
   const ScratchFolder folder;
   const Ended ended = run(folder, {executable("tenon-plan"), "--check",
