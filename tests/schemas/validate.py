@@ -28,6 +28,7 @@ MISTAKES = [
     ("task", "planner/tasks/toy_1d.yaml", ["speeds", "approach_mps"], 100),
     ("task", "planner/tasks/toy_1d.yaml", ["coordinates"], ["theta"]),
     ("task", "planner/tasks/toy_1d.yaml", ["held", 0, "cylinder"], {"diameter_m": 1, "length_m": 1}),
+    ("task", "planner/tasks/toy_1d.yaml", ["starts", 0, "uniform_m"], [0.01]),
     ("cell", "hw/cells/gantry3.yaml", ["faults", "force_N"], 0),
     ("cell", "hw/cells/gantry3.yaml", ["robot"], None),
     ("robot", "hw/robots/gantry3/robot.yaml", ["bus", "bitrate_bps"], 333),
