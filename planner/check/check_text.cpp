@@ -55,8 +55,7 @@ std::string touches_text(const Task& task, const Start& start, const StartCheck&
 std::string room_text(const GoalRoom& room) {
   if (!room.down_m && !room.up_m) return "open both ways";
   const auto side = [&](const char* sign, const std::optional<double>& way_m) {
-    return (way_m ? format("%.3g", 1e3 * *way_m) : "open") + " towards " + sign +
-           axis_name(room.axis);
+    return (way_m ? way_mm_text(*way_m) : "open") + " towards " + sign + axis_name(room.axis);
   };
   return side("-", room.down_m) + ", " + side("+", room.up_m);
 }

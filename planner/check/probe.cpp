@@ -10,7 +10,6 @@
 namespace tenon::planner {
 namespace {
 
-constexpr double kBisectedTo_m = 1e-5;
 // A part that stands in another is looked for outside of it in so many strides.
 constexpr int kStrides = 64;
 
@@ -29,7 +28,7 @@ double largest(const std::vector<Shape>& shapes) {
 /// Between a way that is not yet so and one that is.
 template <typename Is>
 double bisected(double not_yet_m, double already_m, const Is& is) {
-  while (already_m - not_yet_m > kBisectedTo_m) {
+  while (already_m - not_yet_m > kWayKnownTo_m) {
     const double middle_m = 0.5 * (not_yet_m + already_m);
     (is(middle_m) ? already_m : not_yet_m) = middle_m;
   }

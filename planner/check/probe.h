@@ -25,6 +25,9 @@ struct Overlap {
   int sign = 1;
 };
 
+/// What Probe::way_to_touch() is good to.
+inline constexpr double kWayKnownTo_m = 1e-5;
+
 class Probe {
  public:
   Probe(const Task& task, MakeRollout make);
@@ -38,8 +41,8 @@ class Probe {
   /// Which shape of the environment the part meets at a pose: the first that overlaps, or none.
   [[nodiscard]] std::string met_at(const Pose& tool);
 
-  /// How far the tool goes from a free pose along axis * sign until the part touches, m, to a
-  /// hundredth of a millimetre; none where it goes all of `reach_m`.
+  /// How far the tool goes from a free pose along axis * sign until the part touches, m;
+  /// none where it goes all of `reach_m`.
   [[nodiscard]] std::optional<double> way_to_touch(const Pose& from, int axis, int sign,
                                                    double reach_m);
 

@@ -6,6 +6,7 @@
 
 #include "planner/belief/belief.h"
 #include "planner/check/sizes.h"
+#include "planner/check/understood.h"
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/task/inserted.h"
@@ -15,6 +16,9 @@ namespace tenon::planner {
 namespace {
 
 using Weight = Finding::Weight;
+
+// What arms, calibrated and soft, are good for at best.
+constexpr double kPlayMin_m = 5e-5;
 
 std::string at(const Vector3& p) { return format("(%.4g, %.4g, %.4g) m", p.x(), p.y(), p.z()); }
 
@@ -60,6 +64,7 @@ class Checker {
       const double reach_m = push_reach_m(task_);
       check_.goal_room.push_back({axis, probe_.way_to_touch(task_.goal, axis, -1, reach_m),
                                   probe_.way_to_touch(task_.goal, axis, 1, reach_m)});
+      play(check_.goal_room.back());
     }
     const bool alone = std::all_of(check_.goal_room.begin(), check_.goal_room.end(),
                                    [](const GoalRoom& room) { return !room.down_m && !room.up_m; });
@@ -68,6 +73,18 @@ class Checker {
                               " nothing is near: no push from it, along any coordinate, touches "
                               "the environment");
     }
+  }
+
+  /// A part as wide as its hole: nothing is in anything, and yet it never goes in.
+  void play(const GoalRoom& room) {
+    if (!room.down_m || !room.up_m) return;
+    const double play_m = *room.down_m + *room.up_m;
+    if (play_m >= kPlayMin_m) return;
+    add(Weight::kDoubt,
+        format("at the goal the play along %s (both ways together) is %s mm, less than %g mm: no "
+               "arm puts it in; is a clearance missing between part and hole?",
+               axis_name(room.axis), way_mm_text(play_m).c_str(), 1e3 * kPlayMin_m) +
+            oversize_text(task_));
   }
 
   // Out of the one it is in the other: no place of the goal helps. @return it is so, and told
@@ -186,14 +203,17 @@ class Checker {
   }
 
   void untouched(const Start& start, const std::vector<Touch>& touches) {
+    CoordinateMask open = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const double own_m = task_.goal_axes.tolerance[axis];
       const double allowed_m = own_m > 0.0 ? own_m : task_.goal_tolerance_m;
       const bool uncertain =
           task_.particle_sigmas * start.sigma[axis] > allowed_m && !has(task_.goal_axes.free, axis);
-      const bool touched = std::any_of(touches.begin(), touches.end(),
-                                       [axis](const Touch& touch) { return touch.axis == axis; });
-      if (!has(task_.coordinates, axis) || !uncertain || touched) continue;
+      if (!has(task_.coordinates, axis) || !uncertain || touched_along(touches, axis)) continue;
+      open = static_cast<CoordinateMask>(open | 1U << static_cast<unsigned>(axis));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!has(open, axis) || others_hide(start, open, axis)) continue;
       add(Weight::kDoubt,
           "start '" + start.name + "' has nothing to touch along " + axis_name(axis) +
               format(" within %.3g m: only a contact tells where the part is along it. It takes a "
@@ -202,6 +222,26 @@ class Checker {
                      push_reach_m(task_), axis_name(axis), error_key(task_, axis),
                      stated_error(task_, start, axis)));
     }
+  }
+
+  /// Whether the much larger spread along other open axes is why nothing is touched along one: a
+  /// smaller one along them helps, and is asked for there.
+  bool others_hide(const Start& start, CoordinateMask open, int axis) {
+    constexpr double kMuchLarger = 4.0;
+    Start known = start;
+    double largest_m = 0.0;
+    for (int other = 0; other < 3; ++other) {
+      if (other == axis || !has(open, other)) continue;
+      largest_m = std::max(largest_m, start.sigma[other]);
+      known.sigma[other] = 0.0;
+    }
+    return largest_m > kMuchLarger * start.sigma[axis] &&
+           touched_along(touchable(task_, known, probe_), axis);
+  }
+
+  static bool touched_along(const std::vector<Touch>& touches, int axis) {
+    return std::any_of(touches.begin(), touches.end(),
+                       [axis](const Touch& touch) { return touch.axis == axis; });
   }
 
   const Task& task_;

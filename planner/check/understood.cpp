@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "planner/check/probe.h"
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
 #include "shared/task/ring.h"
@@ -31,6 +32,10 @@ std::string size_text(const Part& part) {
   const std::string size = format("%.4g x %.4g x %.4g", 1e3 * part.size_m.x(),
                                   1e3 * part.size_m.y(), 1e3 * part.size_m.z());
   return part.pieces == 1 ? size : format("of %zu pieces, each ", part.pieces) + size;
+}
+
+std::string way_mm_text(double way_m) {
+  return way_m < kWayKnownTo_m ? "below 0.01" : format("%.3g", 1e3 * way_m);
 }
 
 std::string spread_text(const Start& start, const Task& task) {

@@ -24,6 +24,9 @@ struct Part {
 /// "60 x 60 x 160" in mm, or "of 16 pieces, each 44 x 29.84 x 120".
 [[nodiscard]] std::string size_text(const Part& part);
 
+/// Room at the goal in mm, "9.96": it is measured to a hundredth, less is "below 0.01".
+[[nodiscard]] std::string way_mm_text(double way_m);
+
 /// "x +-90 mm, ry +-2 degrees": how far out the particles of a start are.
 [[nodiscard]] std::string spread_text(const Start& start, const Task& task);
 

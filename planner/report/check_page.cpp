@@ -119,7 +119,7 @@ std::string start_section(const Task& task, const StartCheck& checked, bool goal
 }
 
 std::string room_text(const std::optional<double>& way_m) {
-  return way_m ? format("%.3g mm", 1e3 * *way_m) : "open";
+  return way_m ? way_mm_text(*way_m) + " mm" : "open";
 }
 
 std::string understood(const Task& task, const TaskCheck& check) {

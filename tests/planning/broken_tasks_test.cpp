@@ -146,6 +146,34 @@ TEST(BrokenTasks, ASpreadThatIsLargerThanAPocketTouchesNothingInIt) {
       << ended.out;
 }
 
+TEST(BrokenTasks, ASmallSpreadIsNotBlamedForWhatLargeOnesHide) {
+  const ScratchFolder folder;
+  auto task = YAML::LoadFile(in_tree("tests/planning/broken_tasks.yaml"))["task"].as<std::string>();
+  const std::string errors = "[0.01, -0.02, 0.10]}, sigma_m: [0.008, 0.008, 0.008]";
+  task.replace(task.find(errors), errors.size(),
+               "[0.01, -0.02, 0.10]}, uniform_m: [0.3, 0.3, 0.005]");
+  const Ended ended =
+      run(folder, {executable("tenon-plan"), "--check", folder.put("a.yaml", task)});
+  for (const char* axis : {"x", "y"}) {
+    EXPECT_NE(ended.out.find(std::string("nothing to touch along ") + axis), std::string::npos)
+        << ended.out;
+  }
+  EXPECT_NE(ended.out.find("a smaller uniform_m there than 0.3 m"), std::string::npos) << ended.out;
+  EXPECT_EQ(ended.out.find("nothing to touch along z"), std::string::npos) << ended.out;
+}
+
+TEST(BrokenTasks, ARoomThatIsTooSmallToMeasureIsSaidToBe) {
+  const ScratchFolder folder;
+  auto task = YAML::LoadFile(in_tree("tests/planning/broken_tasks.yaml"))["task"].as<std::string>();
+  task.replace(task.find("0.040, 0.040, 0.100"), 5, "0.042");
+  const Ended ended =
+      run(folder, {executable("tenon-plan"), "--check", folder.put("a.yaml", task)});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_NE(ended.out.find("room along x: below 0.01 towards -x, below 0.01 towards +x\n"),
+            std::string::npos)
+      << ended.out;
+}
+
 TEST(BrokenTasks, NoPushThatIsSaidToTouchGoesThroughAWall) {
   const ScratchFolder folder;
   const Ended ended = run(folder, {executable("tenon-plan"), "--check",
