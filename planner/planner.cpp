@@ -285,7 +285,7 @@ class Planning {
                                                                       : PlanStatus::kExhausted;
     const SearchLimits limits{task_.time_limit_s, options_.expansions_max, options_.moves_max};
     const std::string refused = reach_ ? reach_->refused_text() : "";
-    return ended(status, no_path(status, report_, searched_->graph(), limits) +
+    return ended(status, no_path(status, report_, searched_->graph(), limits, task_.errors) +
                              (refused.empty() ? "" : "; " + refused));
   }
 

@@ -32,16 +32,17 @@ std::string tried(const PlanReport& report, const BeliefGraph& graph) {
 }
 
 /// Which directions stay open, and what would settle them.
-std::string unsettled(CoordinateMask axes) {
+std::string unsettled(CoordinateMask axes, Distribution errors) {
   std::string names;
   for (int axis = 0; axis < 6; ++axis) {
     if (!has(axes, axis)) continue;
     names += std::string(names.empty() ? "" : ", ") + axis_name(axis);
   }
   if (names.empty()) return {};
-  return "; nothing that was pushed against settles " + names +
-         ": it takes a face across it that the part can reach with its whole spread, or a smaller "
-         "sigma there";
+  return format(
+      "; nothing that was pushed against settles %s: it takes a face across it that the part can "
+      "reach with its whole spread, or a smaller %s there",
+      names.c_str(), errors == Distribution::kUniform ? "uniform bound" : "sigma");
 }
 
 }  // namespace
@@ -123,7 +124,7 @@ std::string already_at_goal(const Start& start) {
 }
 
 std::string no_path(PlanStatus status, const PlanReport& report, const BeliefGraph& graph,
-                    const SearchLimits& limits) {
+                    const SearchLimits& limits, Distribution errors) {
   std::string what = "the searched graph has no path left after ";
   if (status == PlanStatus::kTimeLimit) {
     what = format("no path within %g s (raise --time-limit), after ", limits.time_s);
@@ -136,7 +137,7 @@ std::string no_path(PlanStatus status, const PlanReport& report, const BeliefGra
   } else if (status == PlanStatus::kNoAttractor) {
     what = "no push from the start reduces its uncertainty, and no path exists after ";
   }
-  return what + tried(report, graph) + unsettled(report.unsettled);
+  return what + tried(report, graph) + unsettled(report.unsettled, errors);
 }
 
 std::string every_path_refuted(const PlanReport& report, std::size_t paths) {

@@ -56,8 +56,10 @@ struct SearchLimits {
 [[nodiscard]] std::string already_at_goal(const Start& start);
 /// @param status kTimeLimit, kMoveLimit, kExpansionLimit, kNoAttractor or kExhausted
 /// @param report of all searches so far  @param graph how near the last one came
+/// @param errors of the task's starts
 [[nodiscard]] std::string no_path(PlanStatus status, const PlanReport& report,
-                                  const BeliefGraph& graph, const SearchLimits& limits);
+                                  const BeliefGraph& graph, const SearchLimits& limits,
+                                  Distribution errors);
 [[nodiscard]] std::string every_path_refuted(const PlanReport& report, std::size_t paths);
 
 }  // namespace tenon::planner

@@ -82,6 +82,11 @@ TEST(NewcomersTask, WithoutAFaceAcrossYItIsSaidThatNothingSettlesIt) {
   EXPECT_NE(report.reason.find("nothing that was pushed against settles x, y: it takes a face"),
             std::string::npos)
       << report.reason;
+  EXPECT_NE(report.reason.find("or a smaller sigma there"), std::string::npos) << report.reason;
+  text.replace(text.find("sigma_m"), 7, "uniform_m");
+  const PlanReport bounded = planned(text);
+  EXPECT_NE(bounded.reason.find("or a smaller uniform bound there"), std::string::npos)
+      << bounded.reason;
 }
 
 }  // namespace
