@@ -77,7 +77,7 @@ std::shared_ptr<const Solid> ShapeReader::read_mesh(const Value& value) {
   try {
     solid = std::make_shared<const Solid>(parse_part(file, bytes, scale));
   } catch (const InputError& error) {
-    throw InputError(file.string() + ": " + error.what());
+    value.refuse(file.string() + ": " + error.what());
   }
   contents_ += format("#%016llx", static_cast<unsigned long long>(fnv1a_64(bytes)));
   return solid;

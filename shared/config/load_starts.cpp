@@ -102,8 +102,10 @@ void check_ways(const std::vector<Value>& starts, const Value& goal, const Task&
     const double least = *std::min_element(ways.begin(), ways.end());
     const double most = *std::max_element(ways.begin(), ways.end());
     const auto refuse = [&](const Value& pose, const char* whom) {
-      pose.refuse(format("is %f %s off %s along %s, which is not a search coordinate",
-                         std::abs(*off), axis_unit(axis), whom, axis_name(axis)));
+      pose.refuse(
+          format("is %f %s off %s along %s, which is not a search coordinate; add %s "
+                 "to coordinates, or let start and goal agree along it",
+                 std::abs(*off), axis_unit(axis), whom, axis_name(axis), axis_name(axis)));
     };
     if (starts.size() > 1 && most - least <= kSamePlace) refuse(goal, "all starts");
     const auto index = static_cast<std::size_t>(off - ways.begin());

@@ -87,16 +87,29 @@ void read_primitives(const Value& value, Task& task) {
   task.direct_reach_m = map.number("direct_reach_m", {0.0, 10.0});
 }
 
+/// Of a move in contact, which is no faster than one through free air.
+double contact_speed(const Map& map, const char* key, const char* approach_key, double approach,
+                     double most) {
+  const Value given = map.at(key);
+  const double speed = given.number(positive_to(most));
+  if (speed > approach) {
+    given.refuse_value(format("in (0, %g]: no more than %s", approach, approach_key));
+  }
+  return speed;
+}
+
 SpeedLimits read_speeds(const Value& value) {
   const Map map(value, {"approach_mps", "contact_mps", "acceleration_mps2", "jerk_mps3",
                         "approach_radps", "contact_radps", "acceleration_radps2", "jerk_radps3"});
   SpeedLimits v;
   v.approach_mps = map.number("approach_mps", positive_to(1.0));
-  v.contact_mps = map.number("contact_mps", positive_to(v.approach_mps));
+  v.contact_mps = contact_speed(map, "contact_mps", "approach_mps", v.approach_mps, 1.0);
   map.optional_number("acceleration_mps2", positive_to(100.0), v.acceleration_mps2);
   map.optional_number("jerk_mps3", positive_to(1e4), v.jerk_mps3);
   map.optional_number("approach_radps", positive_to(3.0), v.approach_radps);
-  map.optional_number("contact_radps", positive_to(v.approach_radps), v.contact_radps);
+  if (map.find("contact_radps")) {
+    v.contact_radps = contact_speed(map, "contact_radps", "approach_radps", v.approach_radps, 3.0);
+  }
   map.optional_number("acceleration_radps2", positive_to(1e3), v.acceleration_radps2);
   map.optional_number("jerk_radps3", positive_to(1e5), v.jerk_radps3);
   return v;

@@ -32,7 +32,8 @@ struct Unit {
 
 // The longer ends first: what ends in _mps does not end in _s. Bounds of lengths are metres that no
 // hand or arm reaches, so that whatever is beyond them is in millimetres.
-constexpr std::array<Unit, 11> kUnits = {
+// So are errors of angles beyond a radian in degrees.
+constexpr std::array<Unit, 13> kUnits = {
     {{"_m2", "m^2", "mm^2", 1e6},
      {"_mps", "m/s", "mm/s", 1e3},
      {"_mps2", "m/s^2", "mm/s^2", 1e3},
@@ -43,18 +44,23 @@ constexpr std::array<Unit, 11> kUnits = {
      {"_N", "N", "mN", 1e3},
      {"_Nm", "Nm", "Nmm", 1e3},
      {"_radps", "rad/s", "degrees/s", 180.0 / std::numbers::pi},
+     {"sigma_rad", "rad", "degrees", 180.0 / std::numbers::pi, 1.0},
+     {"uniform_rad", "rad", "degrees", 180.0 / std::numbers::pi, 1.0},
      {"_rad", "rad", "degrees", 180.0 / std::numbers::pi}}};
 
 // What other formats call it, and what people say.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOtherWords = {
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kOtherWords = {
     {{"filename", "file"},
      {"path", "file"},
      {"mesh_file", "mesh"},
      {"height_m", "length_m"},
      {"height", "length_m"},
      {"xyz", "position_m"},
-     {"translation", "position_m"},
-     {"rpy", "rotation_rad"}}};
+     {"translation", "position_m"}}};
+
+// Rotations in ways that no pose here has.
+constexpr std::array<std::string_view, 8> kOtherRotations = {
+    "quaternion", "quat", "orientation", "rpy", "rpy_deg", "rpy_rad", "euler", "rotation_deg"};
 
 const Unit* unit_of(std::string_view path) {
   while (path.ends_with(']')) path = path.substr(0, path.rfind('['));
@@ -119,6 +125,11 @@ std::string key_hint(std::string_view key, std::span<const std::string_view> kno
   if (is_known("pose") && (key == "position_m" || key == "rotation_rad" || key == "position")) {
     return "; it stands in the pose: pose: {position_m: [0.1, 0, 0]}";
   }
+  const bool rotation =
+      std::find(kOtherRotations.begin(), kOtherRotations.end(), key) != kOtherRotations.end();
+  if (rotation && is_known("rotation_rad")) {
+    return "; rotations are rotation_rad, a rotation vector: axis times angle, in rad";
+  }
   for (const auto& [word, meant] : kOtherWords) {
     if (key == word && is_known(meant)) return "; did you mean " + std::string(meant) + "?";
   }
@@ -161,7 +172,8 @@ constexpr std::array<Forgotten, 6> kForgotten = {
      {"end of sequence",
       "; here or above, an entry of a list is indented unlike the others, or its dash is missing"},
      {"illegal map value",
-      "; here or above, an indent differs, a comment lacks its #, a key has = for its colon, or a { is missing"}}};
+      "; here or above, an indent differs, a comment lacks its #, a key has = for its colon, or a "
+      "{ is missing"}}};
 
 }  // namespace
 

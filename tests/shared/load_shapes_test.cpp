@@ -75,7 +75,8 @@ TEST_F(LoadShapes, BadFilesAreRefusedByName) {
                 "/none.stl: cannot be read: No such file or directory");
   folder.put("part.step", "ISO-10303-21;");
   EXPECT_EQ(refused("mesh: {file: part.step, scale: 1}"),
-            here + "/part.step: must be an STL or OBJ file: its name must end in .stl or .obj");
+            here + "/task.yaml:9: held[0].mesh: " + here +
+                "/part.step: must be an STL or OBJ file: its name must end in .stl or .obj");
   TriangleMesh open = kBox;
   open.triangles.pop_back();
   folder.put("open.stl", binary_stl(open, 1e-3));

@@ -170,7 +170,8 @@ TEST(LoadTask, RefusesEachBadNameAndShapeWithItsPlace) {
       {"name: right", "name: left", ":9: starts[1].name = left, must be unique among the starts"},
       {"name: wall", "name: peg", ":6: environment[0].name = peg, must be unique among the shapes"},
       {"[-0.1, 0, 0]", "[-0.1, 0, 0.01]",
-       ":8: starts[0].pose: is 0.010000 m off the goal along z, which is not a search coordinate"},
+       ":8: starts[0].pose: is 0.010000 m off the goal along z, which is not a search coordinate; "
+       "add z to coordinates, or let start and goal agree along it"},
       {"box_m: [1, 2, 3]", "box_m: [1, 0, 3]",
        ":6: environment[0].box_m[1] = 0, must be in (0, 100]"},
       {"box_m: [1, 2, 3], ", "",
@@ -218,7 +219,7 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
        ":11: primitives: a step takes 20 s at contact speed, contact.timeout_s is 10 s: shorter "
        "steps, more speed or more time"},
       {"contact_mps: 0.05", "contact_mps: 0.2",
-       ":12: speeds.contact_mps = 0.2, must be in (0, 0.1]"},
+       ":12: speeds.contact_mps = 0.2, must be in (0, 0.1]: no more than approach_mps"},
       {"long_step_m: 1.0", "long_step_m: 0.01",
        ":11: primitives.long_step_m = 0.01, must be in [0.1, 10]"},
       {"force_keep_N: 3.0", "force_keep_N: 7.0",
@@ -241,8 +242,7 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
        ":25: physics.rollout_step_s = 0.006, must be in [0.0001, 0.005]"},
       {"coordinates: [x, rz]", "coordinates: [x, rz",
        ":3: is not YAML: end of sequence flow not found; here or above, a [...] is not closed, or "
-       "has "
-       "no comma between two of its entries"},
+       "has no comma between two of its entries"},
       {"physics:\n", "---\n", ": must hold one YAML document, holds 2 or more"},
   };
   expect_refusals(kTinyTask, lines,
