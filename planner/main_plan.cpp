@@ -28,6 +28,7 @@
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
 #include "shared/config/load.h"
+#include "shared/config/variant.h"
 #include "shared/system/fan_out.h"
 #include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
@@ -191,6 +192,19 @@ int check(const Arguments& a, Task task) {
   return checked.refused() ? 2 : 0;
 }
 
+/// Of a file that is given without a variant: throws what the first that does not load is refused
+/// for.
+void check_variants(const std::string& name) {
+  if (config::split_variant(name).variant) return;
+  for (const std::string& variant : task_variants(name)) {
+    try {
+      static_cast<void>(load_task(name + "#" + variant));
+    } catch (const InputError& error) {
+      throw InputError(format("%s (of variant '%s')", error.what(), variant.c_str()));
+    }
+  }
+}
+
 /// Of what only planning writes, nothing is taken and then not written.
 void write_nothing_more(const char* what, const char* option, const std::string& given) {
   if (given.empty()) return;
@@ -233,6 +247,7 @@ int run(const Arguments& a) {
     write_nothing_more("--check", "--output", a.output);
     write_nothing_more("--check", "--json", a.json);
     check_apart({{"--report", a.report}}, {{"the task", a.task}, {"--cell", a.cell}});
+    check_variants(a.task);
     return check(a, std::move(task));
   }
   if (a.output.empty()) throw InputError("--output is required; see --help");

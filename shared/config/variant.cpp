@@ -23,7 +23,7 @@ VariantOfFile split_variant(const std::filesystem::path& name) {
 
 std::vector<std::string> variant_names(const Value& document) {
   const std::optional<Value> variants = document.peek(kVariants);
-  return variants ? variants->keys() : std::vector<std::string>{};
+  return variants && !variants->is_empty() ? variants->keys() : std::vector<std::string>{};
 }
 
 Value with_variant(const Value& document, const std::string& variant) {

@@ -69,6 +69,8 @@ class Value {
   /// The value of a key before the mapping as a whole is checked, where other keys depend on it.
   [[nodiscard]] std::optional<Value> peek(std::string_view key) const;
   [[nodiscard]] bool is_mapping() const { return node_.IsMap(); }
+  /// Nothing stands behind the key.
+  [[nodiscard]] bool is_empty() const { return node_.IsNull(); }
   /// Of a list; 0 of all else.
   [[nodiscard]] std::size_t entries_written() const {
     return node_.IsSequence() ? node_.size() : 0;
