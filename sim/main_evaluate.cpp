@@ -121,6 +121,7 @@ int replay(const EvaluateLine& line, const Cell& cell, const sim::Evaluation& ev
                 candidate.file.c_str(), trial.number,
                 out_text(evaluation.task, trial.distance).c_str(), sim::tilt_text(trial).c_str(),
                 static_cast<unsigned long long>(trial.seed));
+    if (!sim::made_for(candidate, evaluation.task)) std::printf("%s\n", sim::kOtherTask);
     RecordReport black_box;
     const sim::TrialResult result =
         sim::TrialRunner(cell, evaluation.task, candidate).tell(trial, line.black_box, black_box);

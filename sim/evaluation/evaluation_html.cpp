@@ -163,6 +163,26 @@ class Report {
     return carded_table(titles, rows);
   }
 
+  [[nodiscard]] static std::string force_text(const Summary& summary) {
+    const Quantiles& force = summary.contact_force_N;
+    return summary.begun == 0 ? ""
+                              : format("%.1f / %.1f / %.1f N", force.p50, force.p99, force.max);
+  }
+
+  [[nodiscard]] static std::string time_text(const Summary& summary) {
+    return summary.begun == 0 ? "" : format("%.1f s", summary.duration_s.p50);
+  }
+
+  /// Of a plan of which no run was done: there are no ends to tell of.
+  [[nodiscard]] std::vector<std::string> undone_row(std::size_t i) const {
+    std::vector<std::string> row = {"<td>" + name_of(evaluation_.candidates[i]) + "</td>",
+                                    "<td>no run was done</td>"};
+    row.resize(7, number_cell(""));
+    row.push_back(number_cell(force_text(summaries_[i])));
+    row.push_back(number_cell(time_text(summaries_[i])));
+    return row;
+  }
+
   [[nodiscard]] std::string errors_table() const {
     const std::vector<std::string> titles = {"Runs that were done",
                                              "Axis",
@@ -176,12 +196,15 @@ class Report {
     std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < summaries_.size(); ++i) {
       const Summary& summary = summaries_[i];
+      if (summary.done == 0) {
+        rows.push_back(undone_row(i));
+        continue;
+      }
       const bool spreads = summary.done > 1;  // one run does not
       bool first = true;
       for (const AxisError& error : summary.errors) {
         const int axis = error.axis;
         const char* unit = axis < 3 ? "mm" : "&deg;";
-        const Quantiles& force = summary.contact_force_N;
         std::vector<std::string> row = {
             "<td>" + (first ? name_of(evaluation_.candidates[i]) : "") + "</td>",
             std::string("<td>") + axis_name(axis) + "</td>",
@@ -193,9 +216,8 @@ class Report {
             number_cell(first ? format("%.2f / %.2f mm", 1e3 * summary.error_norm_m.mean,
                                        1e3 * summary.error_norms_m.max)
                               : ""),
-            number_cell(first ? format("%.1f / %.1f / %.1f N", force.p50, force.p99, force.max)
-                              : ""),
-            number_cell(first ? format("%.1f s", summary.duration_s.p50) : "")};
+            number_cell(first ? force_text(summary) : ""),
+            number_cell(first ? time_text(summary) : "")};
         rows.push_back(std::move(row));
         first = false;
       }
@@ -209,7 +231,7 @@ class Report {
     std::string html = "<section aria-labelledby='" + id + "'><h2 id='" + id + "'>" +
                        name_of(candidate) + ": " + to_string(candidate.plan.method) + ", start " +
                        drawing::escaped(candidate.plan.start_name) + "</h2>\n";
-    if (candidate.plan.task_hash != task_.hash) {
+    if (!made_for(candidate, task_)) {
       html += "<p class='note'>The plan was made for another task, or another variant of it.</p>\n";
     }
     html += failures_part(i) + "<div class='plots'>\n";

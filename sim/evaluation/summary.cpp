@@ -25,8 +25,9 @@ std::string text_of(const Rate& rate) {
                 1e2 * interval.low, 1e2 * interval.high);
 }
 
-/// A line for each axis. One run has no deviation.
+/// A line for each axis, and one for the distance. One run has no deviation.
 std::string errors_text(const Summary& summary) {
+  if (summary.done == 0) return "  no run was done: there is no end to tell of\n";
   std::string text;
   for (const AxisError& error : summary.errors) {
     const int axis = error.axis;
@@ -43,13 +44,16 @@ std::string errors_text(const Summary& summary) {
     const std::string ratio = ratio_text(error);
     text += ratio.empty() ? "\n" : " (" + ratio + ")\n";
   }
-  return text;
+  return text + format("  distance from the goal where done: mean %.3f, p99 %.3f, max %.3f mm\n",
+                       1e3 * summary.error_norm_m.mean, 1e3 * summary.error_norms_m.p99,
+                       1e3 * summary.error_norms_m.max);
 }
 
 std::string describe(const Task& task, const Candidate& candidate) {
   const Summary s = summarise(task, candidate);
   std::string text = candidate.file + " (" + to_string(candidate.plan.method) + ", start " +
                      candidate.plan.start_name + ")\n";
+  if (!made_for(candidate, task)) text += std::string("  ") + kOtherTask + "\n";
   text += "  succeeded " + text_of(s.success) +
           format("; stopped %zu, done but wrong %zu\n", s.stopped, s.done_but_wrong);
   for (const RateWithin& within : s.within) {
@@ -62,8 +66,7 @@ std::string describe(const Task& task, const Candidate& candidate) {
             text_of(s.promised) + "\n";
   }
   text += errors_text(s);
-  text += format("  distance from the goal where done: mean %.3f, p99 %.3f, max %.3f mm\n",
-                 1e3 * s.error_norm_m.mean, 1e3 * s.error_norms_m.p99, 1e3 * s.error_norms_m.max);
+  if (s.begun == 0) return text;
   text +=
       format("  largest contact force: p50 %.1f, p95 %.1f, p99 %.1f, max %.1f N; %.1f s a run\n",
              s.contact_force_N.p50, s.contact_force_N.p95, s.contact_force_N.p99,
@@ -113,6 +116,7 @@ Summary summarise(const Task& task, const Candidate& candidate) {
       summary.promised.successes += succeeded;
     }
     if (!result.error) continue;
+    ++summary.begun;
     forces_N.push_back(result.contact_force_N_max);
     durations_s.push_back(result.duration_s);
     if (!result.done) continue;

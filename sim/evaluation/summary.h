@@ -51,10 +51,18 @@ struct AxisError {
 /// "1/240", "3.4 times", or nothing where it cannot be told.
 [[nodiscard]] std::string ratio_text(const AxisError& error);
 
+/// Of a plan for which made_for() does not hold.
+inline constexpr const char* kOtherTask =
+    "the plan was made for another task, or another variant of it";
+[[nodiscard]] inline bool made_for(const Candidate& candidate, const Task& task) {
+  return candidate.plan.task_hash == task.hash;
+}
+
 struct Summary {
   Rate success;
   std::size_t stopped = 0;
   std::size_t done_but_wrong = 0;
+  std::size_t begun = 0;                       ///< that forces and times are of
   std::size_t done = 0;                        ///< that `errors` are of
   std::vector<RateWithin> within;              ///< 2, 3 and c_p, ascending; or the bounds
   Rate promised;                               ///< of the last of these, see within_promise()

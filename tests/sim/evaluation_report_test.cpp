@@ -77,6 +77,33 @@ TEST(EvaluationSummary, CountsEveryRunOnce) {
   EXPECT_NEAR(summary.within[1].mass, 0.988891, 1e-6);
 }
 
+TEST(EvaluationSummary, WhereNoRunWasDoneThereIsNoEndToTellOf) {
+  Evaluation evaluation = small_evaluation();
+  Candidate& candidate = evaluation.candidates.front();
+  for (const std::size_t number : {1, 2, 3, 4}) candidate.runs.erase(number);
+  const std::string stopped = describe(evaluation);
+  EXPECT_NE(stopped.find("  no run was done"), std::string::npos) << stopped;
+  EXPECT_EQ(stopped.find("off by"), std::string::npos) << stopped;
+  EXPECT_EQ(stopped.find("distance from the goal"), std::string::npos) << stopped;
+  EXPECT_NE(stopped.find("largest contact force: p50 50.0"), std::string::npos) << stopped;
+  const std::string page = evaluation_html(evaluation);
+  EXPECT_NE(page.find(">no run was done</td>"), std::string::npos);
+  EXPECT_EQ(page.find("0.000 mm"), std::string::npos);
+  EXPECT_EQ(page.find("0.00 / 0.00 mm"), std::string::npos);
+  EXPECT_NE(page.find("50.0 / 50.0 / 50.0 N"), std::string::npos);
+  candidate.runs.erase(5);
+  EXPECT_EQ(describe(evaluation).find("contact force"), std::string::npos);
+  EXPECT_EQ(evaluation_html(evaluation).find("0.0 / 0.0 / 0.0 N"), std::string::npos);
+}
+
+TEST(EvaluationSummary, APlanOfAnotherTaskIsSaidToBeOne) {
+  Evaluation evaluation = small_evaluation();
+  evaluation.candidates.front().plan.task_hash = evaluation.task.hash;
+  EXPECT_EQ(describe(evaluation).find(kOtherTask), std::string::npos);
+  ++evaluation.candidates.front().plan.task_hash;
+  EXPECT_NE(describe(evaluation).find(kOtherTask), std::string::npos);
+}
+
 TEST(EvaluationSummary, AFailureInAWorldThatIsTiltedTooFarBreaksNoPromise) {
   Evaluation evaluation = small_evaluation();
   evaluation.task.particle_sigmas = 3.0;
