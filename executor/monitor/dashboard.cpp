@@ -12,7 +12,7 @@ namespace {
 constexpr int kTwoColumnsFrom = 80;
 constexpr int kThreeColumnsFrom = 150;
 constexpr int kGap = 2;
-constexpr std::size_t kBannerLinesMost = 3;
+constexpr std::size_t kBannerLinesLeast = 3;
 constexpr std::size_t kNoticeLinesMost = 3;
 
 // How the body is spaced, from airy to tight.
@@ -47,6 +47,10 @@ std::vector<Line> beside(const std::vector<std::vector<Line>>& columns, int widt
   return lines;
 }
 
+int columns_across(int width) {
+  return width < kTwoColumnsFrom ? 1 : width < kThreeColumnsFrom ? 2 : 3;
+}
+
 std::vector<std::vector<Block>> columns_of(const RunModel& model, const View& view, int columns,
                                            int width) {
   const Block run = run_block(model, width);
@@ -77,7 +81,7 @@ void add_history(const RunModel& model, int width, std::size_t height, std::vect
 }
 
 std::vector<Line> body(const RunModel& model, const View& view, std::size_t height) {
-  const int columns = view.width < kTwoColumnsFrom ? 1 : view.width < kThreeColumnsFrom ? 2 : 3;
+  const int columns = columns_across(view.width);
   const int width = (view.width - kGap * (columns - 1)) / columns;
   std::vector<Line> lines;
   const auto blocks = columns_of(model, view, columns, width);
@@ -95,6 +99,33 @@ std::vector<Line> body(const RunModel& model, const View& view, std::size_t heig
     const std::size_t hidden = lines.size() - height + 1;
     lines.resize(height);
     lines.back() = line_of(format("%zu lines more: make the window higher", hidden), Style::kWarn);
+  }
+  return lines;
+}
+
+std::size_t rows_at_the_tightest(const RunModel& model, const View& view) {
+  const int columns = columns_across(view.width);
+  const int width = (view.width - kGap * (columns - 1)) / columns;
+  std::size_t rows = 0;
+  for (const auto& column : columns_of(model, view, columns, width)) {
+    rows = std::max(rows, stacked(column, kSpacings.back()).size());
+  }
+  return rows;
+}
+
+// A message in full, which may say what nobody watches any more, comes before blank lines, titles
+// and the steps that are done. In a window without room for it, it may take half.
+std::vector<Line> banner_lines(const RunModel& model, const View& view, std::size_t height,
+                               std::size_t foot) {
+  const std::size_t others = foot + rows_at_the_tightest(model, view);
+  const std::size_t room = std::max(height > others ? height - others : 0, height / 2);
+  std::vector<Line> lines;
+  for (const Banner& banner : banners(model, view.source, view.source_ended, view.now_ns)) {
+    const std::size_t left = room > lines.size() ? room - lines.size() : 0;
+    for (Line& line :
+         wrapped(banner.text, view.width, std::max(left, kBannerLinesLeast), banner.style)) {
+      lines.push_back(fitted(std::move(line), view.width, banner.style));
+    }
   }
   return lines;
 }
@@ -122,18 +153,13 @@ Line key_line(const View& view) {
 
 std::vector<Line> dashboard(const RunModel& model, const View& view) {
   const auto height = static_cast<std::size_t>(std::max(view.height, 0));
-  std::vector<Line> lines;
-  for (const Banner& banner : banners(model, view.source, view.source_ended, view.now_ns)) {
-    for (Line& line : wrapped(banner.text, view.width, kBannerLinesMost, banner.style)) {
-      lines.push_back(fitted(std::move(line), view.width, banner.style));
-    }
-  }
   std::vector<Line> foot;
   if (!view.notice.empty()) {
     foot = wrapped(view.notice, view.width, kNoticeLinesMost,
                    view.notice_bad ? Style::kBad : Style::kGood);
   }
   foot.push_back(key_line(view));
+  std::vector<Line> lines = banner_lines(model, view, height, foot.size());
   const std::size_t taken = lines.size() + foot.size();
   std::vector<Line> middle = body(model, view, height > taken ? height - taken : 0);
   if (height > taken) middle.resize(height - taken);

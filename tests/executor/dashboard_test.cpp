@@ -181,6 +181,33 @@ TEST(Dashboard, TheWorstStandsFirst) {
   EXPECT_EQ(seen.text(2.5).find("STALE"), std::string::npos) << "an end is no gap";
 }
 
+std::string joined(const std::vector<Line>& lines) {
+  std::string text;
+  for (const Line& line : lines) {
+    text += text_of(line);
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += ' ';
+  }
+  return text;
+}
+
+// Its end says what nobody watches any more, and what may still move.
+TEST(Dashboard, AFaultsMessageIsWholeWhereTheWindowHasRoomForIt) {
+  Seen seen;
+  tenon::run_summary_t summary{};
+  summary.exit_code = 1;
+  summary.message =
+      "node 2 gave no feedback for 3 cycles while 2 are allowed; check bus load and wiring; after "
+      "the stop nobody could watch whether the brake holds; the arm did not confirm that it is "
+      "disabled: take its power before anybody reaches into the cell";
+  take(seen.model, kRunChannel, summary, 0);
+  for (const int height : {50, 30, 24, 20}) {
+    seen.view.height = height;
+    EXPECT_THAT(joined(seen.lines()), HasSubstr(summary.message)) << height << " rows";
+  }
+  EXPECT_THAT(joined(seen.lines()), HasSubstr("q quit"));
+}
+
 TEST(Dashboard, ANewRunForgetsTheOld) {
   Seen seen;
   tenon::run_summary_t summary{};
