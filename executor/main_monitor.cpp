@@ -157,6 +157,7 @@ class Dashboard {
         wait_until_ns(monotonic_now_ns() + kRefresh_ns);
       } else {
         view_.source_ended = !listen(lcm);
+        if (view_.source_ended) view_.source_lacks = what_the_source_lacks(view_.source);
       }
       const std::int64_t now_ns = monotonic_now_ns();
       if (now_ns - shown_ns < kRefresh_ns) continue;
@@ -166,8 +167,7 @@ class Dashboard {
     say(recording_.end());
     screen_.reset();
     if (!view_.notice.empty()) std::printf("%s\n", view_.notice.c_str());
-    return exit_status(model_.malformed,
-                       view_.source_ended ? what_the_source_lacks(view_.source) : "");
+    return exit_status(model_.malformed, view_.source_lacks);
   }
 
  private:

@@ -87,7 +87,7 @@ bool stale(const RunModel& model, bool source_ended, std::int64_t now_ns) {
 }
 
 std::vector<Banner> banners(const RunModel& model, const std::string& source, bool source_ended,
-                            std::int64_t now_ns) {
+                            const std::string& source_lacks, std::int64_t now_ns) {
   std::vector<Banner> banners;
   if (model.summary) banners.push_back(of_summary(model.summary->message));
   const char* state = "";
@@ -103,7 +103,9 @@ std::vector<Banner> banners(const RunModel& model, const std::string& source, bo
   }
   if (model.status) add_waits(model, banners);
   if (source_ended) {
-    banners.push_back({Style::kWarnBanner, "END of " + source});
+    banners.push_back(source_lacks.empty()
+                          ? Banner{Style::kWarnBanner, "END of " + source}
+                          : Banner{Style::kBadBanner, "END, not whole: " + source_lacks});
   } else if (!model.cycle && !model.summary) {
     banners.push_back(before_cycles(model, source, now_ns));
   }

@@ -34,8 +34,10 @@ struct Banner {
   std::string text;
 };
 /// @param source_ended a log that has been played is not stale
+/// @param source_lacks what is missing in it, or nothing
 [[nodiscard]] std::vector<Banner> banners(const RunModel& model, const std::string& source,
-                                          bool source_ended, std::int64_t now_ns);
+                                          bool source_ended, const std::string& source_lacks,
+                                          std::int64_t now_ns);
 /// What is shown is old.
 [[nodiscard]] bool stale(const RunModel& model, bool source_ended, std::int64_t now_ns);
 

@@ -120,7 +120,8 @@ std::vector<Line> banner_lines(const RunModel& model, const View& view, std::siz
   const std::size_t others = foot + rows_at_the_tightest(model, view);
   const std::size_t room = std::max(height > others ? height - others : 0, height / 2);
   std::vector<Line> lines;
-  for (const Banner& banner : banners(model, view.source, view.source_ended, view.now_ns)) {
+  for (const Banner& banner :
+       banners(model, view.source, view.source_ended, view.source_lacks, view.now_ns)) {
     const std::size_t left = room > lines.size() ? room - lines.size() : 0;
     for (Line& line :
          wrapped(banner.text, view.width, std::max(left, kBannerLinesLeast), banner.style)) {

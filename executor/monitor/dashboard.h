@@ -18,6 +18,7 @@ struct View {
   std::int64_t now_ns = 0;     ///< monotonic
   std::string source{};        ///< the URL, for people
   bool source_ended = false;   ///< a log that has been played
+  std::string source_lacks{};  ///< of a log that has been played, empty: nothing
   bool keys = true;            ///< somebody can press one
   std::string recording{};     ///< the file that is being recorded to, empty: none
   std::uint64_t recorded = 0;  ///< messages

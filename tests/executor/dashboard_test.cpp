@@ -208,6 +208,15 @@ TEST(Dashboard, AFaultsMessageIsWholeWhereTheWindowHasRoomForIt) {
   EXPECT_THAT(joined(seen.lines()), HasSubstr("q quit"));
 }
 
+TEST(Dashboard, ALogThatBreaksOffSaysSoAtItsEnd) {
+  Seen seen;
+  seen.view.source = "file://run.lcmlog";
+  seen.view.source_ended = true;
+  EXPECT_EQ(seen.style_of("END of file://run.lcmlog"), Style::kWarnBanner);
+  seen.view.source_lacks = "run.lcmlog: breaks off within a message; what stands before is shown";
+  EXPECT_EQ(seen.style_of("END, not whole: run.lcmlog: breaks off"), Style::kBadBanner);
+}
+
 TEST(Dashboard, ANewRunForgetsTheOld) {
   Seen seen;
   tenon::run_summary_t summary{};

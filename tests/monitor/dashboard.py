@@ -202,7 +202,20 @@ class Test:
             self.check(terminal.wait_for("^FAILED: external force"), "lcm-logplayer does not play it", terminal)
             terminal.end("q")
             terminal.close()
+            self.breaks_off(log)
             log.unlink()
+
+    def breaks_off(self, log):
+        """A log without its end says so on the screen, not only once it is left."""
+        half = self.folder / "half.log"
+        half.write_bytes(log.read_bytes()[:-20])
+        terminal = Terminal([self.arguments.monitor, "--lcm-url", f"file://{half}?speed=1000"], 80, 30)
+        self.check(terminal.wait_for("END, not whole:"), "does not say that the log is not whole", terminal)
+        text = " ".join(line.strip() for line in terminal.lines()[:5])
+        self.check("breaks off within a message" in text, "does not say that the log breaks off", terminal)
+        self.check(terminal.end("q") == 1, "ends as if the log were whole", terminal)
+        terminal.close()
+        half.unlink()
 
     def piped(self):
         """What waits, and what has gone silent, says so once."""
