@@ -40,11 +40,14 @@ std::string ending(const RecordedRun& run) {
 }
 
 std::string timing(const RecordedRun& run) {
-  return badge(
-      run.late_cycles == 0,
-      format("%llu cycles, %llu late; awake at most %.0f &micro;s after the due time",
-             static_cast<unsigned long long>(run.cycles),
-             static_cast<unsigned long long>(run.late_cycles), 1e6 * run.wakeup_late_max_s));
+  std::string text = format("%llu cycles, %llu late", static_cast<unsigned long long>(run.cycles),
+                            static_cast<unsigned long long>(run.late_cycles));
+  if (run.incomplete_cycles > 0) {
+    text += format(", %llu with feedback missing",
+                   static_cast<unsigned long long>(run.incomplete_cycles));
+  }
+  text += format("; awake at most %.0f &micro;s after the due time", 1e6 * run.wakeup_late_max_s);
+  return badge(run.late_cycles == 0 && run.incomplete_cycles == 0, text);
 }
 
 std::string badges(const Plan& plan, const RecordedRun& run) {

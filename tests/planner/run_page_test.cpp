@@ -102,6 +102,19 @@ TEST(RunPage, EscapesWhatFilesSayAndNamesWhatIsMissing) {
             std::string::npos);
 }
 
+// As tenon-exec says it at the run's end.
+TEST(RunPage, CyclesWithFeedbackMissingAreSaidAndAreNothingGood) {
+  const Plan plan = executor::touch_and_slide_plan();
+  RecordedRun run;
+  run.cycles = 1905;
+  EXPECT_NE(run_report(plan, run, nullptr).find("<li class='good'>1905 cycles, 0 late; awake"),
+            std::string::npos);
+  run.incomplete_cycles = 916;
+  EXPECT_NE(run_report(plan, run, nullptr)
+                .find("<li class='bad'>1905 cycles, 0 late, 916 with feedback missing; awake"),
+            std::string::npos);
+}
+
 // The run ended 10 mm beyond the goal along x, where the plan does not know where things are: it is
 // the environment that was there. Along z, which it does know, nothing is moved.
 TEST(RunPage, MovesAFinishedRunOntoTheGoalAlongThePlansCoordinates) {
