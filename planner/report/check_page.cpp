@@ -122,6 +122,26 @@ std::string room_text(const std::optional<double>& way_m) {
   return way_m ? way_mm_text(*way_m) + " mm" : "open";
 }
 
+std::string goal_section(const Task& task, const TaskCheck& check) {
+  const std::string tolerance = "the goal's tolerance is " +
+                                tolerance_text(task.goal_tolerance_m, task.goal_axes) + ".</p>\n";
+  if (!check.goal_free) {
+    return "<section><p>How much room the part has at the goal is not told, for there it stands in "
+           "something; " +
+           tolerance + "</section>\n";
+  }
+  std::string rows;
+  for (const GoalRoom& way : check.goal_room) {
+    rows += row({axis_name(way.axis), room_text(way.down_m), room_text(way.up_m)});
+  }
+  const std::string table =
+      rows.empty() ? "" : titled_table({"Along", "towards -", "towards +"}, rows);
+  return format(
+      "<section><h2>Room at the goal</h2>\n<p>How far the part can go from %s mm until it touches; "
+      "%s%s</section>\n",
+      mm(task.goal.position_m).c_str(), tolerance.c_str(), table.c_str());
+}
+
 std::string understood(const Task& task, const TaskCheck& check) {
   std::string parts;
   const auto add = [&](const std::vector<Shape>& shapes, const char* where) {
@@ -131,15 +151,7 @@ std::string understood(const Task& task, const TaskCheck& check) {
   };
   add(task.held, "held, in the tool frame");
   add(task.environment, "environment, in the task frame");
-  std::string room;
-  for (const GoalRoom& way : check.goal_room) {
-    room += row({axis_name(way.axis), room_text(way.down_m), room_text(way.up_m)});
-  }
-  return "<section><h2>Room at the goal</h2>\n<p>How far the part can go from " +
-         mm(task.goal.position_m) + " mm until it touches; the goal's tolerance is " +
-         tolerance_text(task.goal_tolerance_m, task.goal_axes) + ".</p>\n" +
-         titled_table({"Along", "towards -", "towards +"}, room) +
-         "</section>\n<section><h2>Parts</h2>\n" +
+  return goal_section(task, check) + "<section><h2>Parts</h2>\n" +
          titled_table({"Name", "Size (mm)", "Middle (mm)", ""}, parts) + "</section>\n";
 }
 

@@ -20,6 +20,9 @@ TASKS = [
     ("peg_in_hole_tilt", None, 1, 0, "Nothing stands against planning it"),
     # The part's lower end is inside of the block.
     ("peg_in_hole_tilt", ("position_m: [-0.10, 0.0, 0.18]", "position_m: [-0.10, 0.0, 0.06]"), 1, 1, "is in collision"),
+    # The goal is in the block's wall.
+    ("peg_in_hole_tilt", ("pose: {position_m: [0.0, 0.0, 0.010]}\n  tol", "pose: {position_m: [0.02, 0.0, 0.010]}\n  tol"),
+     1, 1, "is in collision"),
 ]
 
 
@@ -49,6 +52,9 @@ def look(browser, page, expected, failures, pictures):
             failures.check(found == figures, f"{name}: {found} pictures, not {figures}")
             found = browser.evaluate("document.querySelectorAll('svg [fill=\"#a63d00\"]').length")
             failures.check(found == red, f"{name}: {found} parts in red, not {red}")
+            empty = browser.evaluate("[...document.querySelectorAll('table')].filter(t => !t.querySelector('tbody tr'))"
+                                     ".map(t => t.closest('section').textContent)")
+            failures.check(not empty, f"{name}: tables without rows: {empty}")
             first = browser.evaluate("document.querySelector('.badges li').textContent")
             failures.check(finding in first, f"{name}: says first '{first}'")
             for said in browser.said():
