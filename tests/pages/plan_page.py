@@ -117,6 +117,39 @@ def press(browser, key):
         browser.call("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=0)
 
 
+# In how many pixels of the scene in space its particles are seen.
+PARTICLES_ARE_SEEN = """(async () => {
+  const canvas = document.querySelector('.canvas canvas');
+  const box = [...document.querySelectorAll('.legend label')].find(e => / particle/.test(e.textContent))
+    .querySelector('input');
+  const pixels = () => new Promise(done => {
+    box.click();
+    requestAnimationFrame(() => {
+      const flat = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
+      flat.drawImage(canvas, 0, 0);
+      done(flat.getImageData(0, 0, canvas.width, canvas.height).data);
+    });
+  });
+  const [without, shown] = [await pixels(), await pixels()];
+  let count = 0;
+  for (let i = 0; i < shown.length; i += 4) {
+    if ([0, 1, 2].some(c => Math.abs(shown[i + c] - without[i + c]) > 4)) ++count;
+  }
+  return count; })()"""
+EDGES_MAX = 3000  # px; with faces that fight for what is in front it were more than 9000
+
+
+def particles_at_the_end(browser, file, failures):
+    """All are where the front part is: its faces have their own colour, whatever edges shine through."""
+    browser.open(file, width=1400)
+    browser.wait_for(f"{ROOT}.ready === 'true'")
+    rise(browser)
+    press(browser, "End")
+    browser.wait_for(f"{ROOT}.step === 'end'")
+    seen = browser.evaluate(PARTICLES_ARE_SEEN)
+    failures.check(0 < seen < EDGES_MAX, f"{file.stem}: at the end particles are seen in {seen} pixels")
+
+
 def play(browser, file, failures):
     """By itself from the start to the end, where the page says what the data says; then by keys."""
     name = file.stem
@@ -220,7 +253,7 @@ def main(failures):
                 play(browser, files[0], failures)
                 stay_put(browser, files[0], failures, webgl)
                 if webgl:
-                    for test in (keep_view, fall_back, scroll_over_the_scene):
+                    for test in (keep_view, fall_back, scroll_over_the_scene, particles_at_the_end):
                         test(browser, files[0], failures)
                     continue  # words and numbers are the same
                 tick_by_key(browser, files[0], failures)

@@ -20,7 +20,8 @@ function sceneMaterials() {
     nominalEdges: lines({ opacity: 0.4 }),
     front: faces({}),
     frontEdges: lines({ opacity: 0.9 }),
-    particle: faces({ transparent: true, opacity: 0.08, depthWrite: false }),
+    // Behind the front part, where all have come to the same place.
+    particle: faces({ transparent: true, opacity: 0.08, depthWrite: false, polygonOffsetFactor: 4 }),
     particleEdges: lines({ opacity: 0.3 }),
     goal: lines({ opacity: 0.9 }),
     path: lines({ opacity: 0.85 }),
