@@ -273,8 +273,8 @@ class Report {
                                shown) +
            drawing::figure(figure_of_ends(evaluation_, sample, view),
                            "Where the part ended about its goal, and the tolerance of " +
-                               tolerance_text(task_.goal_tolerance_m, task_.goal_axes) + "." +
-                               shown);
+                               tolerance_text(task_.goal_tolerance_m, task_.goal_axes) + ". " +
+                               note_of_ends(evaluation_, sample, view) + shown);
   }
 
   [[nodiscard]] static std::string class_cell(const TrialResult& result) {

@@ -18,6 +18,7 @@ namespace {
 constexpr int kWide_px = 660;
 constexpr int kNarrow_px = 400;
 constexpr const char* kGoalColour = "#2a7f3f";
+constexpr double kEndsReach = 1.5;  ///< of the figure of ends, in tolerances
 
 struct Extent {
   Point low = Point::Constant(1e9);
@@ -273,8 +274,8 @@ std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candid
                            const drawing::View& view) {
   const double tolerance_mm = 1e3 * evaluation.task.goal_tolerance_m;
   Extent extent;
-  extent.add(Point::Constant(-1.5 * tolerance_mm));
-  extent.add(Point::Constant(1.5 * tolerance_mm));
+  extent.add(Point::Constant(-kEndsReach * tolerance_mm));
+  extent.add(Point::Constant(kEndsReach * tolerance_mm));
   Plot plot = plot_of(extent, view, kNarrow_px);
   plot.circle(Point::Zero(), Point::Constant(tolerance_mm),
               "fill='#2a7f3f' fill-opacity='.07' stroke='#2a7f3f' stroke-width='1.5'");
@@ -285,6 +286,40 @@ std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candid
     return view.mm(run.result.error->head<3>());
   });
   return plot.svg(side_of(view) + "where the part ended about its goal");
+}
+
+std::string note_of_ends(const Evaluation& evaluation, const Candidate& candidate,
+                         const drawing::View& view) {
+  const double tolerance_mm = 1e3 * evaluation.task.goal_tolerance_m;
+  std::size_t ends = 0;
+  std::size_t outside = 0;
+  std::size_t failed_outside = 0;
+  std::size_t failed_in_circle = 0;
+  for (const auto& [number, run] : candidate.runs) {
+    if (!run.result.error) continue;
+    ++ends;
+    const Point end = view.mm(run.result.error->head<3>());
+    const bool failed = classify(run.result) != TrialClass::kSucceeded;
+    if (end.cwiseAbs().maxCoeff() > kEndsReach * tolerance_mm) {
+      ++outside;
+      if (failed) ++failed_outside;
+    } else if (failed && end.norm() <= tolerance_mm) {
+      ++failed_in_circle;
+    }
+  }
+  std::string note = "Dots: done and at the goal; crosses: not.";
+  if (failed_in_circle > 0) {
+    note += format(
+        " Of the crosses, %zu in the circle: stopped, or off in what this side does not show.",
+        failed_in_circle);
+  }
+  if (outside > 0) {
+    note += format(" Outside of this plot: %zu of %zu ends, %zu of them failed.", outside, ends,
+                   failed_outside);
+  }
+  const std::size_t none = candidate.runs.size() - ends;
+  if (none > 0) note += format(" %zu run%s ended nowhere.", none, plural(none));
+  return note;
 }
 
 std::string figure_of_errors(const Evaluation& evaluation, const Candidate& candidate) {

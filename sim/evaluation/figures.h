@@ -30,6 +30,9 @@ inline constexpr const char* kFigureStyle =
 /// Where the part ended, close to the goal.
 [[nodiscard]] std::string figure_of_ends(const Evaluation& evaluation, const Candidate& candidate,
                                          const drawing::View& view);
+/// What its marks mean, and what it does not show: a sentence or more, for its caption.
+[[nodiscard]] std::string note_of_ends(const Evaluation& evaluation, const Candidate& candidate,
+                                       const drawing::View& view);
 /// How many ended how far from the goal.
 [[nodiscard]] std::string figure_of_errors(const Evaluation& evaluation,
                                            const Candidate& candidate);

@@ -277,6 +277,21 @@ TEST(EvaluationHtml, StandsAloneAndMarksEveryFailure) {
   EXPECT_EQ(count_of(page, "<title>run 6"), 1U);  // it ended nowhere
 }
 
+TEST(EvaluationHtml, SaysWhichEndsAPlotLeavesOutAndWhichItShowsAsIfAtTheGoal) {
+  Evaluation evaluation = small_evaluation();
+  EXPECT_NE(evaluation_html(evaluation)
+                .find("Outside of this plot: 2 of 5 ends, 2 of them failed. 1 run ended nowhere."),
+            std::string::npos);
+  evaluation.task.coordinates = 0b000111;
+  // Along z alone, which only the second side shows.
+  evaluation.candidates[0].runs.at(4).result.error = Vector6(0.03 * Vector6::Unit(2));
+  const std::string page = evaluation_html(evaluation);
+  EXPECT_EQ(count_of(page, "Of the crosses, 1 in the circle: stopped, or off in what this side"),
+            1U);
+  EXPECT_EQ(count_of(page, "Outside of this plot: 1 of 5 ends, 1 of them failed."), 1U);
+  EXPECT_EQ(count_of(page, "Outside of this plot: 2 of 5 ends, 2 of them failed."), 1U);
+}
+
 TEST(EvaluationPageData, TellsRunsApartByOutcomeAndReach) {
   Evaluation evaluation = small_evaluation();
   evaluation.task.particle_sigmas = 3.0;
