@@ -198,7 +198,7 @@ void check_variants(const std::string& name) {
   if (config::split_variant(name).variant) return;
   for (const std::string& variant : task_variants(name)) {
     try {
-      static_cast<void>(load_task(name + "#" + variant));
+      static_cast<void>(load_task(format("%s#%s", name.c_str(), variant.c_str())));
     } catch (const InputError& error) {
       throw InputError(format("%s (of variant '%s')", error.what(), variant.c_str()));
     }
