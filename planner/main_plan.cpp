@@ -28,7 +28,6 @@
 #include "shared/config/command_line.h"
 #include "shared/config/file_options.h"
 #include "shared/config/load.h"
-#include "shared/config/variant.h"
 #include "shared/system/fan_out.h"
 #include "shared/system/monotonic_clock.h"
 #include "shared/task/find_start.h"
@@ -190,19 +189,6 @@ int check(const Arguments& a, Task task) {
   if (!a.report.empty()) write_file(a.report, planner::check_page(a.task, task, checked));
   std::fputs((planner::check_text(a.task, task, checked) + changes).c_str(), stdout);
   return checked.refused() ? 2 : 0;
-}
-
-/// Of a file that is given without a variant: throws what the first that does not load is refused
-/// for.
-void check_variants(const std::string& name) {
-  if (config::split_variant(name).variant) return;
-  for (const std::string& variant : task_variants(name)) {
-    try {
-      static_cast<void>(load_task(format("%s#%s", name.c_str(), variant.c_str())));
-    } catch (const InputError& error) {
-      throw InputError(format("%s (of variant '%s')", error.what(), variant.c_str()));
-    }
-  }
 }
 
 /// Of what only planning writes, nothing is taken and then not written.

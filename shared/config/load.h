@@ -21,6 +21,9 @@ namespace tenon {
 
 /// The names of a task file's variants, in its order.
 [[nodiscard]] std::vector<std::string> task_variants(const std::filesystem::path& file);
+/// Of a file that is given without a variant: throws what the first that does not load is refused
+/// for.
+void check_variants(const std::filesystem::path& name);
 
 /// hw/robots/NAME/robot.yaml, the URDF that it names, and the profiles of drives and sensor that it
 /// names.

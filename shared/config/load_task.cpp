@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "shared/base/error.h"
 #include "shared/base/fnv.h"
 #include "shared/base/text.h"
 #include "shared/config/file_kind.h"
@@ -323,6 +324,17 @@ Task load_task(const std::filesystem::path& name) {
 
 std::vector<std::string> task_variants(const std::filesystem::path& file) {
   return config::variant_names(Value::parse(file, config::read_file(file)));
+}
+
+void check_variants(const std::filesystem::path& name) {
+  if (config::split_variant(name).variant) return;
+  for (const std::string& variant : task_variants(name)) {
+    try {
+      static_cast<void>(load_task(format("%s#%s", name.c_str(), variant.c_str())));
+    } catch (const InputError& error) {
+      throw InputError(format("%s (of variant '%s')", error.what(), variant.c_str()));
+    }
+  }
 }
 
 }  // namespace tenon
