@@ -1,6 +1,7 @@
 #include "planner/judge/judged_starts.h"
 
 #include <algorithm>
+#include <array>
 
 #include "planner/belief/belief.h"
 #include "shared/base/random.h"
@@ -13,24 +14,41 @@ namespace {
 // A start whose every draw collides is no start; the planner has refused it before.
 constexpr int kAttempts = 1000;
 
+using Corners = std::vector<PhysicalParameters>;
+
+double with_give(double stiffness_Npm, double give_mpN) {
+  return stiffness_Npm / (1.0 + give_mpN * stiffness_Npm);
+}
+
 /// Lowest and highest friction, no latency and the longest, with the part as large as it may be,
-/// then as drawn where that is something else.
-std::vector<PhysicalParameters> corners(const Plan& plan, const Task& task) {
+/// then as drawn where that is something else; the contact softest or stiffest, by turns, such that
+/// neither goes with one of the rest. @param odd the other way round
+Corners corners(const Plan& plan, const Task& task, bool odd) {
   std::vector<double> latencies_s = {0.0};
   if (plan.latency_max_s > 0.0) latencies_s.push_back(plan.latency_max_s);
-  std::vector<PhysicalParameters> all;
-  for (const double friction : {task.friction.low, task.friction.high}) {
+  Corners all;
+  for (const bool slippery : {true, false}) {
     for (const double latency_s : latencies_s) {
-      all.push_back({friction, plan.contact_stiffness_Npm, task.oversize_m, latency_s});
+      const bool soft = (slippery != (latency_s > 0.0)) != odd;
+      const auto stiffness_Npm = [&](bool low) {
+        return with_give(plan.contact_stiffness_Npm, low ? task.contact_give_mpN : 0.0);
+      };
+      const double friction = slippery ? task.friction.low : task.friction.high;
+      all.push_back({friction, stiffness_Npm(soft), task.oversize_m, latency_s});
       if (task.oversize_m == 0.0) continue;
-      all.push_back({friction, plan.contact_stiffness_Npm, 0.0, latency_s});
+      all.push_back({friction, stiffness_Npm(!soft), 0.0, latency_s});
     }
   }
   return all;
 }
 
+/// By turns, so that starts that have them in turn have all of them softest and stiffest.
+std::array<Corners, 2> corners(const Plan& plan, const Task& task) {
+  return {corners(plan, task, false), corners(plan, task, true)};
+}
+
 /// Those of the corners with the largest part.
-std::vector<PhysicalParameters> largest(std::vector<PhysicalParameters> all, const Task& task) {
+Corners largest(Corners all, const Task& task) {
   std::erase_if(all, [&](const auto& one) { return one.oversize_m != task.oversize_m; });
   return all;
 }
@@ -134,18 +152,20 @@ std::vector<Vector6> rim_directions(const Task& task, const Start& start) {
   return directions;
 }
 
-/// Those of a rim that do not collide, each with all of the parameters.
-std::vector<JudgedStart> starts_at(double sigmas, const std::vector<PhysicalParameters>& physics,
+/// Those of a rim that do not collide, each with all of the parameters of its turn.
+std::vector<JudgedStart> starts_at(double sigmas, const std::array<Corners, 2>& physics,
                                    const Task& task, const Start& start, Rollout& rollout) {
   const std::vector<Tilt> tilts = extreme_tilts(task);
   // As many as share no factor with the corners: taking turns ties none of them to one.
   const std::vector<Vector3> errors = sensor_errors(task);
   std::vector<JudgedStart> starts;
+  bool odd = true;
   for (const Vector6& direction : rim_directions(task, start)) {
+    odd = !odd;
     const Particle level =
         particle_off(sigmas * direction.cwiseProduct(start.sigma), task, start, {});
     if (rollout.in_collision(level.tool())) continue;
-    for (const PhysicalParameters& one : physics) {
+    for (const PhysicalParameters& one : physics[odd ? 1 : 0]) {
       Particle particle = tilted(level, tilts[starts.size() % tilts.size()], task);
       if (rollout.in_collision(particle.tool())) particle = level;
       particle.physics = one;
@@ -161,11 +181,12 @@ std::vector<JudgedStart> starts_at(double sigmas, const std::vector<PhysicalPara
 std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, DrawnPhysics physics,
                                       const Plan& plan, const Task& task, const Start& start,
                                       Rollout& rollout) {
-  const std::vector<PhysicalParameters> extremes = corners(plan, task);
+  const std::array<Corners, 2> extremes = corners(plan, task);
   Random random(seed);
   Random late(stream_seed(seed, "latency"));
   Random turned(stream_seed(seed, "tilt"));
   Random off(stream_seed(seed, "sensor"));
+  Random give(stream_seed(seed, "contact give"));
   const bool felt = sensor_errors(task).size() > 1;
   std::vector<JudgedStart> starts;
   for (std::size_t i = 0; i < count; ++i) {
@@ -173,11 +194,13 @@ std::vector<JudgedStart> drawn_starts(std::uint64_t seed, std::size_t count, Dra
     const Tilt tilt = draw_tilt(turned, task);
     JudgedStart drawn = draw_place(random, tilt, task, start, rollout);
     PhysicalParameters& p = drawn.particle.physics;
-    p.contact_stiffness_Npm = plan.contact_stiffness_Npm;
+    p.contact_stiffness_Npm =
+        with_give(plan.contact_stiffness_Npm, give.uniform() * task.contact_give_mpN);
     p.friction = random.uniform(task.friction.low, task.friction.high);
     if (task.oversize_m > 0.0) p.oversize_m = random.uniform() * task.oversize_m;
     p.latency_s = late.uniform() * plan.latency_max_s;
-    if (at_corner) p = extremes[i / 2 % extremes.size()];
+    const std::size_t corner = i / 2 % extremes[0].size();
+    if (at_corner) p = extremes[i / 2 / extremes[0].size() % 2][corner];
     if (felt) {
       for (double& error_m : p.sensor_error_m) {
         error_m = off.uniform(-task.sensor_error_m, task.sensor_error_m);
@@ -242,8 +265,8 @@ std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task, const
 
 std::vector<JudgedStart> screening_starts(const Plan& plan, const Task& task, const Start& start,
                                           Rollout& rollout) {
-  const std::vector<PhysicalParameters> physics = corners(plan, task);
-  const std::size_t each = physics.size();
+  const std::array<Corners, 2> physics = corners(plan, task);
+  const std::size_t each = physics[0].size();
   const std::vector<JudgedStart> all =
       starts_at(task.particle_sigmas, physics, task, start, rollout);
   std::vector<JudgedStart> some;
@@ -257,13 +280,15 @@ std::vector<JudgedStart> screening_starts(const Plan& plan, const Task& task, co
 
 std::vector<JudgedStart> passage_starts(const Plan& plan, const Task& task, const Start& start,
                                         Rollout& rollout) {
-  const std::vector<PhysicalParameters> physics = corners(plan, task);
+  const std::array<Corners, 2> turns = corners(plan, task);
+  Corners physics = turns[0];
+  physics.insert(physics.end(), turns[1].begin(), turns[1].end());
   const std::vector<Tilt> tilts = extreme_tilts(task);
   const std::vector<Vector3> errors = sensor_errors(task);
   Task level = task;
   level.tilt_rad = 0.0;
   const std::vector<JudgedStart> rim =
-      starts_at(task.particle_sigmas, {PhysicalParameters{}}, level, start, rollout);
+      starts_at(task.particle_sigmas, {Corners(1), Corners(1)}, level, start, rollout);
   if (rim.empty()) return {};
   // Of each tilt an even number, half of them with either size.
   const std::size_t each = 2 * ((rim.size() - 1) / tilts.size() + 1);
@@ -283,7 +308,9 @@ std::vector<JudgedStart> passage_starts(const Plan& plan, const Task& task, cons
 std::vector<JudgedStart> rim_starts(const Plan& plan, const Task& task, const Start& start,
                                     Rollout& rollout) {
   if (drawn_sigmas(task) <= task.particle_sigmas) return {};
-  return starts_at(drawn_sigmas(task), largest(corners(plan, task), task), task, start, rollout);
+  const auto [even, odd] = corners(plan, task);
+  return starts_at(drawn_sigmas(task), {largest(even, task), largest(odd, task)}, task, start,
+                   rollout);
 }
 
 }  // namespace tenon::planner

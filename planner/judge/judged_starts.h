@@ -16,8 +16,8 @@ struct JudgedStart {
   double sigmas_out = 0.0;  ///< see shared/task/spread.h
 };
 
-/// What of friction, size and latency the draws have. All are tilted by as much as may be or less,
-/// about any axes.
+/// What of friction, size, latency and contact stiffness the draws have. All are tilted by as much
+/// as may be or less, about any axes.
 enum class DrawnPhysics : std::uint8_t {
   kEven,     ///< drawn evenly from their ranges
   kCorners,  ///< every second draw at one of the corners of these ranges, in turn
@@ -67,20 +67,22 @@ struct Tilt {
 
 /// On the rim of the particles' reach, c_p standard deviations out or at the bounds, along every
 /// uncertain coordinate both ways and to every corner between them; each at all corners of
-/// friction, size and latency, and tilted in turn about each axis that is no coordinate, either
-/// way, and not at all, as far as there are starts for all of that; a tilt by which one would
-/// collide it does without. What is tilted is the environment and, where moves do not turn with the
-/// tool, the part in the hand, or both, the same way or against each other.
+/// friction, size and latency, on the softest or the stiffest contact by turns, and tilted in turn
+/// about each axis that is no coordinate, either way, and not at all, as far as there are starts
+/// for all of that; a tilt by which one would collide it does without. What is tilted is the
+/// environment and, where moves do not turn with the tool, the part in the hand, or both, the same
+/// way or against each other.
 [[nodiscard]] std::vector<JudgedStart> corner_starts(const Plan& plan, const Task& task,
                                                      const Start& start, Rollout& rollout);
 
 /// A look at all of these starts: each at one of the corners of friction, size and latency, in
-/// turn, tilted as it is there.
+/// turn, on the contact and tilted as it is there.
 [[nodiscard]] std::vector<JudgedStart> screening_starts(const Plan& plan, const Task& task,
                                                         const Start& start, Rollout& rollout);
 
 /// All of the rim's, each twice at least, with each tilt of corner_starts() as often, at the
-/// corners of friction, size and latency in turn, and of each tilt half with the largest part.
+/// corners of friction, size, latency and contact stiffness in turn, and of each tilt half with the
+/// largest part.
 [[nodiscard]] std::vector<JudgedStart> passage_starts(const Plan& plan, const Task& task,
                                                       const Start& start, Rollout& rollout);
 

@@ -65,8 +65,11 @@ std::string miss_text(const Chain& missed, const Task& task) {
 
 std::string corner_name(const Particle& particle, const Task& task, const Start& start) {
   const PhysicalParameters& corner = particle.physics;
-  std::string name =
-      format("friction %.3g, latency %.1f ms", corner.friction, 1e3 * corner.latency_s);
+  std::string name = format("friction %.3g, ", corner.friction);
+  if (task.contact_give_mpN > 0.0) {
+    name += format("contacts of %.3g N/mm, ", 1e-3 * corner.contact_stiffness_Npm);
+  }
+  name += format("latency %.1f ms", 1e3 * corner.latency_s);
   if (task.oversize_m > 0.0) {
     name += corner.oversize_m <= 0.0
                 ? ", the part as drawn"

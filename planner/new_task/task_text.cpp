@@ -187,10 +187,12 @@ contact:
 )";
 
 constexpr const char* kPhysics = R"(
-# The stiffness is that of contact, sensor and arm in series; --cell puts the cell's in its place.
+# The stiffness is that of contact, sensor and arm in series; --cell puts the cell's in its place. A contact
+# may give way by up to so much more: an edge, or a thin wall.
 physics:
   friction: {low: 0.1, nominal: 0.3, high: 0.6}
   contact_stiffness_Npm: 5e4
+  contact_give_mpN: 3e-5
 
 # Parts from files take longer than boxes do.
 search:

@@ -1,6 +1,7 @@
 #include "planner/report/summary.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -154,10 +155,18 @@ std::string doubt_text(const Validation& validation, const Task& task) {
 
 std::string corners_text(const Validation& validation, const Task& task) {
   double latency_s = 0.0;
+  double softest_Npm = std::numeric_limits<double>::infinity();
+  double stiffest_Npm = 0.0;
   for (const Draw& corner : validation.corners) {
-    latency_s = std::max(latency_s, corner.chain.start.physics.latency_s);
+    const PhysicalParameters& its = corner.chain.start.physics;
+    latency_s = std::max(latency_s, its.latency_s);
+    softest_Npm = std::min(softest_Npm, its.contact_stiffness_Npm);
+    stiffest_Npm = std::max(stiffest_Npm, its.contact_stiffness_Npm);
   }
   std::string physics = format("friction %g and %g", task.friction.low, task.friction.high);
+  if (softest_Npm < stiffest_Npm) {
+    physics += format(", contacts of %.3g and %.3g N/mm", 1e-3 * softest_Npm, 1e-3 * stiffest_Npm);
+  }
   if (latency_s > 0.0) physics += format(", latency 0 and %.1f ms", 1e3 * latency_s);
   if (task.oversize_m > 0.0) {
     physics += format(", the part as drawn and %g mm larger", 1e3 * task.oversize_m);

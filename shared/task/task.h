@@ -98,6 +98,9 @@ struct Task {
 
   Range friction{0.1, 0.3, 0.6};
   double contact_stiffness_Npm = 5e4;
+  /// A contact may give way by up to so much more, m per N, than the above or the cell's says: what
+  /// parts yield, whatever the arm does.
+  double contact_give_mpN = 0.0;
   double oversize_m = 0.0;  ///< the held part may be larger than drawn by up to this, in every size
   /// Calibration may have turned the environment, and the part in the hand, by up to this about any
   /// axis that is no coordinate.

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <string>
 
 #include "shared/config/load.h"
 #include "shared/task/inserted.h"
@@ -55,6 +57,13 @@ std::string refused(const ScratchFolder& folder, const char* what, const char* b
   const std::string file = folder.put("peg.yaml", replaced(kPegTask, what, by)).string();
   const std::string line = refusal([&] { (void)load_task(file + variant); });
   return line.starts_with(file) ? line.substr(file.size()) : line;
+}
+
+TEST(LoadTask, HashIsThatOfTheBytes) {
+  const ScratchFolder folder;
+  const std::uint64_t hash = load_task(folder.put("a.yaml", kPegTask)).hash;
+  EXPECT_EQ(load_task(folder.put("b.yaml", kPegTask)).hash, hash);
+  EXPECT_NE(load_task(folder.put("c.yaml", std::string(kPegTask) + "\n")).hash, hash);
 }
 
 TEST(TaskErrors, UniformOnesReachToTheirBounds) {

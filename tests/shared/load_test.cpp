@@ -105,24 +105,20 @@ TEST(LoadTask, ReadsEveryValue) {
   EXPECT_EQ(task.oversize_m, 2.5e-4);
   EXPECT_EQ(task.tilt_rad, 3e-3);
   EXPECT_EQ(task.sensor_error_m, 1e-3);
+  EXPECT_EQ(task.contact_give_mpN, 3e-5);
   EXPECT_EQ(task.rollout_step_us, 2000);
 
-  const std::string level =
-      replaced(kTinyTask, "  oversize_m: 2.5e-4\n", "  tilt_rad: 0\n  sensor_error_m: 5e-4\n");
+  const std::string level = replaced(kTinyTask, "  oversize_m: 2.5e-4\n",
+                                     "  tilt_rad: 0\n  sensor_error_m: 5e-4\n"
+                                     "  contact_give_mpN: 1e-5\n");
   EXPECT_EQ(load_task(folder.put("level.yaml", level)).tilt_rad, 0.0);
   EXPECT_EQ(load_task(folder.put("level.yaml", level)).sensor_error_m, 5e-4);
+  EXPECT_EQ(load_task(folder.put("level.yaml", level)).contact_give_mpN, 1e-5);
 
   // A fast tool gets a step in which it goes no further than 0.5 mm.
   const std::string fast = replaced(replaced(kTinyTask, "  rollout_step_s: 0.002\n", ""),
                                     "approach_mps: 0.1", "approach_mps: 1.0");
   EXPECT_EQ(load_task(folder.put("fast.yaml", fast)).rollout_step_us, 500);
-}
-
-TEST(LoadTask, HashIsThatOfTheBytes) {
-  const ScratchFolder folder;
-  const std::uint64_t hash = load_task(folder.put("a.yaml", kTinyTask)).hash;
-  EXPECT_EQ(load_task(folder.put("b.yaml", kTinyTask)).hash, hash);
-  EXPECT_NE(load_task(folder.put("c.yaml", std::string(kTinyTask) + "\n")).hash, hash);
 }
 
 TEST(LoadTask, WhatAnyEndWillDoForNeedNotYield) {
@@ -238,6 +234,8 @@ TEST(LoadTask, RefusesEachBadNumberWithItsPlace) {
        ":25: physics.tilt_rad = 0.06, must be in [0, 0.05]"},
       {"rollout_step_s: 0.002", "sensor_error_m: -0.001",
        ":25: physics.sensor_error_m = -0.001, must be in [0, 0.02]"},
+      {"rollout_step_s: 0.002", "contact_give_mpN: 0.03",
+       ":25: physics.contact_give_mpN = 0.03, must be in [0, 0.001]"},
       {"rollout_step_s: 0.002", "rollout_step_s: 0.006",
        ":25: physics.rollout_step_s = 0.006, must be in [0.0001, 0.005]"},
       {"coordinates: [x, rz]", "coordinates: [x, rz",
