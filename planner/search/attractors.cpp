@@ -164,9 +164,8 @@ class GuideSearch {
                          [](const ContactAttractor& contact) { return !contact.in_legs; });
   }
 
-  /// What a tilt makes of a guide's contacts. The lattice alone has no moves to choose by that.
-  [[nodiscard]] double tilt_off_m(const Guide& guide) const {
-    if (!task_.guide_moves) return 0.0;
+  /// What a tilt makes of a guide's contacts.
+  [[nodiscard]] static double tilt_off_m(const Guide& guide) {
     double sum_m = 0.0;
     for (const ContactAttractor& contact : guide.contacts) sum_m += contact.tilt_off_m;
     return sum_m;
@@ -191,7 +190,7 @@ class GuideSearch {
                       other.contacts.end(), same_face)) {
         continue;
       }
-      const auto cost = [this](const Guide& of) { return std::pair(far(of), tilt_off_m(of)); };
+      const auto cost = [](const Guide& of) { return std::pair(far(of), tilt_off_m(of)); };
       if (cost(guide) < cost(other)) other = guide;
       return;
     }
