@@ -209,17 +209,29 @@ std::string see_also(const std::string& program) {
   return ".SH SEE ALSO\n" + text + "\n";
 }
 
+/// Without arguments, and without its subcommands'.
+Options own_options(const CLI::App& app) {
+  return app.get_options([](const CLI::Option* option) { return !option->get_positional(); });
+}
+
 /// Of the program and of all its subcommands.
 Options all_options(const CLI::App& app) {
-  Options options;
-  for (const CLI::Option* option : app.get_options()) {
-    if (!option->get_positional()) options.push_back(option);
-  }
+  Options options = own_options(app);
   for (const CLI::App* sub : subcommands_of(app)) {
     const Options more = all_options(*sub);
     options.insert(options.end(), more.begin(), more.end());
   }
   return options;
+}
+
+/// "--can --help": every name of each.
+std::string names_of_all(const Options& options, const char* between) {
+  std::set<std::string> words;
+  for (const CLI::Option* option : options) {
+    const std::vector<std::string> names = names_of(*option);
+    words.insert(names.begin(), names.end());
+  }
+  return strung({words.begin(), words.end()}, between);
 }
 
 /// What is completed, and the option that it would be the value of. Bash takes --option=value
@@ -237,17 +249,13 @@ constexpr const char* kWordAndOption =
 /// Sets `at` to where a subcommand stands: behind the program's own options and their values, which
 /// bash takes apart at colons and equals signs.
 std::string subcommands_place(const CLI::App& app) {
-  std::vector<std::string> with_value;
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->get_positional() || takes(*option).empty()) continue;
-    const std::vector<std::string> names = names_of(*option);
-    with_value.insert(with_value.end(), names.begin(), names.end());
-  }
+  Options with_value = own_options(app);
+  std::erase_if(with_value, [](const CLI::Option* option) { return takes(*option).empty(); });
   std::string text =
       "  local at=1\n"
       "  while [[ $at -lt $COMP_CWORD && ${COMP_WORDS[at]} == -* ]]; do\n"
       "    case ${COMP_WORDS[at]} in\n    ";
-  text += strung(with_value, "|");
+  text += names_of_all(with_value, "|");
   return text +
          ")\n"
          "      ((at++))\n"
@@ -259,25 +267,15 @@ std::string subcommands_place(const CLI::App& app) {
          "  done\n";
 }
 
-/// "--can --help": an app's own, without its subcommands'.
-std::string option_words(const CLI::App& app) {
-  std::set<std::string> words;
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->get_positional()) continue;
-    const std::vector<std::string> names = names_of(*option);
-    words.insert(names.begin(), names.end());
-  }
-  return strung({words.begin(), words.end()}, " ");
-}
-
 /// Sets `options` to those that may stand here: the program's own, or its subcommand's.
 std::string options_here(const CLI::App& app) {
-  std::string text = "  local options=\"" + option_words(app) + "\"\n";
+  std::string text = "  local options=\"" + names_of_all(own_options(app), " ") + "\"\n";
   const Apps subcommands = subcommands_of(app);
   if (subcommands.empty()) return text;
   text += "  if [[ $at -lt $COMP_CWORD ]]; then\n    case ${COMP_WORDS[at]} in\n";
   for (const CLI::App* sub : subcommands) {
-    text += "    " + sub->get_name() + ") options=\"" + option_words(*sub) + "\" ;;\n";
+    text += "    " + sub->get_name() + ") options=\"" + names_of_all(own_options(*sub), " ") +
+            "\" ;;\n";
   }
   return text + "    esac\n  fi\n";
 }
