@@ -31,12 +31,13 @@ struct Attractors {
 /// about the goal. A push is a contact attractor where the particles then stand within c_u times
 /// their spread before it. Where these leave more than the goal's uncertainty, pushes from drawn
 /// places near the environment (`attractor_samples` of them) are added; before those, where the
-/// task has guide_moves, one against each side of each shape (touch_places.h), and where
+/// task has guide_moves, one against each side of each shape (touch_places.h); where
 /// no straight legs lead to any along an axis, those once more with what is left of the spread when
-/// the other axes are settled. Guides are the
-/// cheapest sequences of contacts that leave no more than the goal's uncertainty (or the most
-/// certain ones, where none does), those first to which straight legs lead, faces before edges
-/// where the task has guide_moves; and the
+/// the other axes are settled; and where the task's tilt would put off what they tell on the way to
+/// the goal's mouth (tilt_offset.h), those once more with the part over a rim of the side. Guides
+/// are the cheapest sequences of contacts that leave no more than the goal's uncertainty (or the
+/// most certain ones, where none does), those first to which straight legs lead, faces before edges
+/// and what a tilt puts off least first where the task has guide_moves; and the
 /// cheapest of them once more by way of the mouth: outside of the place where a tool drawn straight
 /// out of the goal along a contact loses it.
 /// @param succ with moves at approach speed and time for long ones

@@ -53,7 +53,9 @@ void ContactPushes::against_faces(KnownContacts& known) {
 }
 
 /// The part may be met beside a face anywhere along an axis. Where a tilt would put off what it is
-/// told there, it is met at a rim that is near the mouth once the axis is settled.
+/// told there, each side is pushed against once more with the part over one of its two rims along
+/// that axis, the nearest to the start that it can get to, the axis being settled. Which of the
+/// contacts then serve is left to the order of the guides, where a tilt puts off least first.
 void ContactPushes::over_rims(KnownContacts& known) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto& of_axis = known[static_cast<std::size_t>(axis)];
