@@ -6,6 +6,7 @@
 
 #include "shared/base/text.h"
 #include "shared/geometry/solid.h"
+#include "shared/motion/rules.h"
 #include "shared/task/ring.h"
 
 namespace tenon::planner {
@@ -139,7 +140,6 @@ void find_doubtful_goal(const Task& task, std::vector<Finding>& findings) {
 }
 
 void find_other_doubts(const Task& task, std::vector<Finding>& findings) {
-  constexpr double kForceOnMin_N = 0.2;
   const double force_on_N = task.motion.thresholds.force_on_N;
   if (force_on_N < kForceOnMin_N) {
     findings.push_back(
@@ -148,8 +148,7 @@ void find_other_doubts(const Task& task, std::vector<Finding>& findings) {
              "contact.force_on_N = %g is within the noise of most force sensors: a plan takes it "
              "for a contact wherever it comes; write some newtons, in N",
              force_on_N) +
-             (1e3 * force_on_N >= 1.0 ? format("; is it in kN? then write %g N", 1e3 * force_on_N)
-                                      : "")});
+             kilonewtons_hint(force_on_N)});
   }
   double longest_m = 0.0;
   for (const Shape& shape : task.held) longest_m = std::max(longest_m, shape.size_m.maxCoeff());

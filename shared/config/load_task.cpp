@@ -116,14 +116,6 @@ SpeedLimits read_speeds(const Value& value) {
   return v;
 }
 
-/// Of a force that no sensor tells from none, and that a contact would be in the larger unit.
-std::string kilonewtons_hint(double force_on_N) {
-  constexpr double kForceOnMin_N = 0.2;
-  const double meant_N = 1e3 * force_on_N;
-  if (force_on_N >= kForceOnMin_N || meant_N < 1.0) return {};
-  return format("; is force_on_N in kN? then write %g N", meant_N);
-}
-
 /// Thresholds, debounce and limits; refused where they break the rules of a guarded move. After
 /// read_compliance().
 void read_contact(const Value& value, Task& task) {

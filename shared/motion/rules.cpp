@@ -45,4 +45,10 @@ std::optional<std::string> broken_rule(const ContactThresholds& t, double force_
   return std::nullopt;
 }
 
+std::string kilonewtons_hint(double force_on_N) {
+  const double meant_N = 1e3 * force_on_N;
+  if (force_on_N >= kForceOnMin_N || meant_N < 1.0) return {};
+  return format("; is force_on_N in kN? then write %g N", meant_N);
+}
+
 }  // namespace tenon

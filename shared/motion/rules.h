@@ -27,4 +27,11 @@ struct ContactConditions {
                                                      double acceleration_max_mps2,
                                                      const ContactConditions& conditions);
 
+/// A lower threshold of force is within the noise of most sensors.
+inline constexpr double kForceOnMin_N = 0.2;
+
+/// "; is force_on_N in kN? then write 9 N", of a threshold below kForceOnMin_N that would be a
+/// contact's in the larger unit; else nothing.
+[[nodiscard]] std::string kilonewtons_hint(double force_on_N);
+
 }  // namespace tenon
