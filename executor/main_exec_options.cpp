@@ -51,6 +51,7 @@ void add_work(CLI::App& app, Options& options) {
 
 void add_outputs(CLI::App& app, Options& options) {
   app.add_option("--lcm-url", options.lcm_url, "Where telemetry goes, or none")
+      ->type_name("URL")
       ->capture_default_str();
   app.add_option("--log", options.log,
                  "Telemetry of every cycle, for tenon-monitor, tenon-inspect and lcm-logplayer");

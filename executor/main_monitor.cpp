@@ -253,7 +253,9 @@ int main(int argc, char** argv) {
         "  tenon-monitor --lcm-url 'file://run.lcmlog?speed=1'\n"
         "  tenon-monitor export run.lcmlog --csv run.csv --mcap run.mcap");
     app.set_version_flag("--version", TENON_VERSION);
-    app.add_option("--lcm-url", options.url, "Where telemetry comes from")->capture_default_str();
+    app.add_option("--lcm-url", options.url, "Where telemetry comes from")
+        ->type_name("URL")
+        ->capture_default_str();
     app.add_option("--record-to", options.record_to, "Folder of what the key r records")
         ->capture_default_str();
     app.add_flag("--lines", options.lines, "Write lines on a terminal too");

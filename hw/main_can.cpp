@@ -256,13 +256,17 @@ Commands add_commands(CLI::App& app, Arguments& arguments) {
   commands.write = app.add_subcommand("write", "Write an object");
   for (CLI::App* command : {commands.read, commands.write}) {
     describe_node(*command, arguments);
-    command->add_option("INDEX", arguments.index, "Of the object, such as 0x6041")->required();
-    command->add_option("SUB", arguments.sub, "Its sub-index")->required();
+    command->add_option("INDEX", arguments.index, "Of the object, such as 0x6041")
+        ->required()
+        ->type_name("NUMBER");
+    command->add_option("SUB", arguments.sub, "Its sub-index")->required()->type_name("NUMBER");
   }
-  commands.write
-      ->add_option("TYPE", arguments.type, "What it is: u8, u16, u32, i8, i16, i32 or str")
-      ->required();
-  commands.write->add_option("VALUE", arguments.value, "What to write")->required();
+  commands.write->add_option("TYPE", arguments.type, "What it is")
+      ->required()
+      ->type_name("TEXT:{u8,u16,u32,i8,i16,i32,str}");
+  commands.write->add_option("VALUE", arguments.value, "What to write")
+      ->required()
+      ->type_name("WORD");
   return commands;
 }
 

@@ -93,6 +93,7 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("task", a.task, "Task file");
   describe_new_task(app, a.new_task);
   app.add_option("--start", a.start, "Name of the start to plan from")
+      ->type_name("NAME")
       ->default_str("the task's first");
   app.add_option("--cell", a.cell, "Cell file: plan with what its arm and contact stiffness allow");
   std::vector<std::string> methods;

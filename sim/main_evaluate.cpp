@@ -239,10 +239,12 @@ int parse_and_evaluate(int argc, char** argv) {
       ->default_str("all cores");
   app.add_option("--by", line.by,
                  "Break success down by a drawn quantity, or by two: friction=0.1:0.8:7")
+      ->type_name("QUANTITY")
       ->expected(1, 2);
   app.add_option("--runs", line.runs, "Run log to go on with; default: --json's name with .jsonl");
   CLI::Option* shard =
       app.add_option("--shard", line.shard, "Only the I-th part of N of the runs: I/N")
+          ->type_name("I/N")
           ->capture_default_str();
   CLI::Option* merge =
       app.add_option("--merge", line.merge, "Run logs of shards; what they lack is made");

@@ -300,6 +300,22 @@ void answer_help(const std::string& fault) {
   throw CommandLineAnswered{};
 }
 
+/// Where the environment and the tool stand.
+void add_world(CLI::App& app, CommandLine& line) {
+  app.add_option("--start", line.start, "Where the tool stands; default: the task's first start")
+      ->type_name("NAME");
+  CLI::Option* seed = app.add_option(
+      "--seed", line.seed, "How far the environment is off is drawn by it, and the sensor's noise");
+  constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53U;  // what a JSON reader keeps exactly
+  seed->check(CLI::Range(std::uint64_t{0}, kSeedMax).description("[0, 2^53]"));
+  app.add_option("--offset", line.offset, "How far the environment is off: x_m=0.02,y_m=-0.01")
+      ->type_name("ERRORS")
+      ->excludes(seed);
+  app.add_option("--experiment", line.experiment,
+                 "Ranges to draw from how the world differs from what task and cell file say")
+      ->needs(seed);
+}
+
 int parse_and_simulate(int argc, char** argv) {
   CommandLine line;
   CLI::App app{"The virtual arm: drives, sensor and physics behind a CAN bus, on their own clock.",
@@ -320,25 +336,17 @@ int parse_and_simulate(int argc, char** argv) {
          "Bus; slcan-listen://HOST:PORT serves it, port 0: a free one; arm=URI,sensor=URI for a "
          "force/torque sensor with a bus of its own")
       ->required();
-  app.add_option("--start", line.start, "Where the tool stands; default: the task's first start");
-  CLI::Option* seed = app.add_option(
-      "--seed", line.seed, "How far the environment is off is drawn by it, and the sensor's noise");
-  constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53U;  // what a JSON reader keeps exactly
-  seed->check(CLI::Range(std::uint64_t{0}, kSeedMax).description("[0, 2^53]"));
-  app.add_option("--offset", line.offset, "How far the environment is off: x_m=0.02,y_m=-0.01")
-      ->excludes(seed);
-  app.add_option("--experiment", line.experiment,
-                 "Ranges to draw from how the world differs from what task and cell file say")
-      ->needs(seed);
+  add_world(app, line);
   app.add_option("--fault", line.faults,
                  "A fault of the bus or a device, as drop:node=3,time_s=2; may be repeated; "
                  "--fault help lists them")
+      ->type_name("FAULT")
       ->allow_extra_args(false)
       ->each(answer_help);
-  app.add_option(
-      "--lcm-url", line.lcm_url,
-      "Where the executor's telemetry comes from: a fault with at=step:N hears from it which step "
-      "runs");
+  app.add_option("--lcm-url", line.lcm_url,
+                 "Where the executor's telemetry comes from: a fault with at=step:N hears from it "
+                 "which step runs")
+      ->type_name("URL");
   app.add_option("--twin", line.twins,
                  "NODE=FILE: that joint's drive answers with the objects, limits and access types "
                  "of an EDS or DCF file; may be repeated")
@@ -353,6 +361,7 @@ int parse_and_simulate(int argc, char** argv) {
          "Shows the cell as it really is, live, in a browser on this machine: at "
          "http://127.0.0.1:PORT/, or at a free port")
       ->expected(0, 1)
+      ->type_name("PORT")
       ->option_text("[PORT]");
   app.add_flag("--once", line.once, "End when the client has gone and the arm is at rest");
   parse(app, argc, argv);

@@ -280,6 +280,38 @@ std::string options_here(const CLI::App& app) {
   return text + "    esac\n  fi\n";
 }
 
+/// What a text is, the type does not say: it is another word where it is no file.
+bool may_be_file(const CLI::Option& option) {
+  return choices(option).empty() && option.get_type_name().starts_with("TEXT");
+}
+
+/// The end of a case, for a value that is no file: the words that it is one of, or nothing. What
+/// begins with a dash may be the next option, of one whose value may be left out.
+std::string offered_values(const CLI::Option& option) {
+  if (const std::string values = choices(option); !values.empty()) {
+    return "      COMPREPLY=($(compgen -P \"$glued\" -W \"" + values +
+           "\" -- \"$word\"))\n      return\n      ;;\n";
+  }
+  return "      if [[ $word != -* ]]; then return; fi\n      ;;\n";
+}
+
+/// Of the arguments of the subcommand that stands `at`: what is no file.
+std::string arguments_here(const CLI::App& app) {
+  std::string cases;
+  for (const CLI::App* sub : subcommands_of(app)) {
+    int place = 0;
+    for (const CLI::Option* option : sub->get_options()) {
+      if (!option->get_positional()) continue;
+      ++place;
+      if (may_be_file(*option)) continue;
+      cases +=
+          "    " + sub->get_name() + "-" + std::to_string(place) + ")\n" + offered_values(*option);
+    }
+  }
+  if (cases.empty()) return {};
+  return "  case ${COMP_WORDS[at]}-$((COMP_CWORD - at)) in\n" + cases + "  esac\n";
+}
+
 }  // namespace
 
 std::string manual_page(const CLI::App& app, const std::string& program,
@@ -306,11 +338,8 @@ std::string bash_completion(const CLI::App& app, const std::string& program) {
   std::replace(function.begin(), function.end(), '-', '_');
   std::string cases;
   for (const CLI::Option* option : all_options(app)) {
-    if (const std::string values = choices(*option); !values.empty()) {
-      cases += "    " + strung(names_of(*option), "|") +
-               ")\n      COMPREPLY=($(compgen -P \"$glued\" -W \"" + values +
-               "\" -- \"$word\"))\n      return\n      ;;\n";
-    }
+    if (takes(*option).empty() || may_be_file(*option)) continue;
+    cases += "    " + strung(names_of(*option), "|") + ")\n" + offered_values(*option);
   }
   std::vector<std::string> subcommands;
   for (const CLI::App* sub : subcommands_of(app)) subcommands.push_back(sub->get_name());
@@ -319,15 +348,14 @@ std::string bash_completion(const CLI::App& app, const std::string& program) {
   if (!subcommands.empty()) text += subcommands_place(app);
   text += options_here(app) +
           "  if [[ -z $glued && $word == -* ]]; then\n"
-          "    COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n";
+          "    COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n    return\n  fi\n";
   if (!subcommands.empty()) {
-    text += "  elif [[ $at -eq $COMP_CWORD ]]; then\n    COMPREPLY=($(compgen -W \"" +
-            strung(subcommands, " ") + "\" -- \"$word\"))\n";
+    text += "  if [[ $at -eq $COMP_CWORD ]]; then\n    COMPREPLY=($(compgen -W \"" +
+            strung(subcommands, " ") + "\" -- \"$word\"))\n    return\n  fi\n" +
+            arguments_here(app);
   }
   // A name of a file may hold blanks.
-  text +=
-      "  else\n    local IFS=$'\\n'\n    COMPREPLY=($(compgen -P \"$glued\" -f -- \"$word\"))\n"
-      "  fi\n}\n";
+  text += "  local IFS=$'\\n'\n  COMPREPLY=($(compgen -P \"$glued\" -f -- \"$word\"))\n}\n";
   return text + "complete -o filenames -F " + function + " " + program + "\n";
 }
 
