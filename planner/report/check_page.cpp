@@ -61,7 +61,9 @@ std::vector<Vector3> places_of(const Start& start, const StartCheck& checked) {
   return places_m;
 }
 
-constexpr const char* kInSomething = "fill='#a63d00' fill-opacity='.35' stroke='#a63d00'";
+// Turned light on a dark page as the pictures are (shared/drawing/page/page.css), it becomes pink.
+// Chosen to be far from the other colours on either, and for eyes without red or without green.
+constexpr const char* kInSomething = "fill='#770022' fill-opacity='.35' stroke='#770022'";
 
 std::string picture(const Task& task, const Start& start, const StartCheck& checked, bool goal_free,
                     const drawing::View& view) {
@@ -165,9 +167,8 @@ std::string check_page(const std::string& file, const Task& task, const TaskChec
                  " <span>" + drawing::escaped(file) + "</span></h1>\n" + findings(check);
   page.body =
       "<section><p>Blue: the part at its nominal start; yellow: where it may be instead; green: at "
-      "the goal; red: where it stands in something. Orange and dashed: where pushes touch, "
-      "wherever "
-      "in its spread the part begins.</p></section>\n";
+      "the goal; dark red, on a dark page pink: where it stands in something. Orange and dashed: "
+      "where pushes touch, wherever in its spread the part begins.</p></section>\n";
   for (const StartCheck& start : check.starts)
     page.body += start_section(task, start, check.goal_free);
   page.body += understood(task, check);

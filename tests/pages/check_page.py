@@ -50,7 +50,7 @@ def look(browser, page, expected, failures, pictures):
             failures.check(wide <= width, f"{name}: {wide} px wide")
             found = browser.evaluate("document.querySelectorAll('figure svg[role=img] > title').length")
             failures.check(found == figures, f"{name}: {found} pictures, not {figures}")
-            found = browser.evaluate("document.querySelectorAll('svg [fill=\"#a63d00\"]').length")
+            found = browser.evaluate("document.querySelectorAll('svg [fill=\"#770022\"]').length")
             failures.check(found == red, f"{name}: {found} parts in red, not {red}")
             empty = browser.evaluate("[...document.querySelectorAll('table')].filter(t => !t.querySelector('tbody tr'))"
                                      ".map(t => t.closest('section').textContent)")
