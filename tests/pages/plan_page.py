@@ -20,6 +20,13 @@ from rise import ROOT, fall_back, keep_view, rise, scroll_over_the_scene, stay_p
 
 BYTES_MAX = 3_000_000
 SMALL = 700  # px; what plays is drawn many times, by software where no graphics card is
+# How far the middle of what stands still in the flat scene is from the middle of its frame, of the frame's width.
+OFF_THE_MIDDLE = """(() => { const frame = document.querySelector('.canvas').getBoundingClientRect();
+  const boxes = [...document.querySelectorAll('.canvas svg > path')].map(e => e.getBoundingClientRect());
+  if (!document.querySelector('.canvas svg > path[fill-opacity="0.45"]')) return 0; // no environment
+  const [left, right] = [Math.min(...boxes.map(b => b.left)), Math.max(...boxes.map(b => b.right))];
+  return ((left + right) - (frame.left + frame.right)) / 2 / frame.width; })()"""
+OFF_MAX = 0.01
 # What covers a part of the picture that one looks at.
 OVER_THE_SCENE = """(() => { const scene = document.querySelector('.canvas').getBoundingClientRect();
   return [...document.querySelectorAll('.stage button, .stage input, .stage p')].filter(e => {
@@ -77,6 +84,8 @@ def look_at(browser, file, fragment, webgl, failures, pictures, served=None):
             failures.check(("In space" in choices) == webgl, f"{name}: offers the views {choices}")
             boxes = browser.evaluate("[...document.querySelectorAll('.in-space')].map(e => getComputedStyle(e).visibility === 'visible')")
             failures.check(all(box == webgl for box in boxes), f"{name}: what a scene in space has is seen: {boxes}")
+            off = 0.0 if webgl else browser.evaluate(OFF_THE_MIDDLE)
+            failures.check(abs(off) < OFF_MAX, f"{name}: the scene is {100 * off:.1f} % of the frame beside its middle")
             over = browser.evaluate(OVER_THE_SCENE)
             failures.check(not over, f"{name}: over the scene stand {over}")
             for said in browser.said():

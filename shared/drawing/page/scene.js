@@ -91,9 +91,9 @@ class ScenePicture {
   }
 
   resize() {
-    if (this.space && this.host.clientWidth) {
-      this.scene.resize(this.host.clientWidth, this.host.clientHeight);
-    }
+    if (!this.host.clientWidth) return;
+    if (this.space) this.scene.resize(this.host.clientWidth, this.host.clientHeight);
+    else this.scene.frame();
   }
 
   choose(view) {

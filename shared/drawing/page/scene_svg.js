@@ -9,10 +9,22 @@ function svgElement(name, attributes = {}, ...children) {
   return element;
 }
 
+// Smaller than it might be, by this factor at most, so that what stands still is nearer to the middle.
+const SMALLER_MOST = 1.2;
+
+// The interval of this length nearest about a middle that holds another, which is no longer.
+function intervalAbout(middle, length, [low, high]) {
+  const begin = Math.min(low, Math.max(high - length, middle - length / 2));
+  return [begin, begin + length];
+}
+
 class SvgScene {
   constructor(host, data, bounds, palette) {
+    this.host = host;
     this.data = data;
     this.bounds = bounds;
+    const still = boundsOf({ ...data, particles: [], reached: [] });
+    this.still = still.points.length ? still : bounds;
     this.svg = svgElement("svg", {
       role: "img",
       "aria-label": "The part, its particles and the environment",
@@ -56,14 +68,37 @@ class SvgScene {
     if (this.last) this.draw(...this.last);
   }
 
-  build() {
-    const { low, high } = this.bounds;
+  // Seen along the view: what of a box is from left to right, and from top to bottom.
+  seen({ low, high }) {
     const [left, bottom] = this.at(low);
     const [right, top] = this.at(high);
-    this.size = Math.max(right - left, bottom - top);
+    return [
+      [left, right],
+      [top, bottom],
+    ];
+  }
+
+  // All that is ever drawn, with the environment and the part at its start and goal as near to the middle of the host
+  // as can be: the part may go far to one side of them.
+  frame() {
+    const within = this.seen(this.bounds);
+    this.size = Math.max(...within.map(([low, high]) => high - low));
     const rim = 0.03 * this.size;
-    const box = [left - rim, top - rim, right - left + 2 * rim, bottom - top + 2 * rim];
+    const all = within.map(([low, high]) => [low - rim, high + rim]);
+    const middles = this.seen(this.still).map(([low, high]) => (low + high) / 2);
+    const lengths = all.map(([low, high], i) =>
+      Math.min(SMALLER_MOST * (high - low), 2 * Math.max(high - middles[i], middles[i] - low)),
+    );
+    const { clientWidth, clientHeight } = this.host;
+    const shape = clientWidth && clientHeight ? clientWidth / clientHeight : lengths[0] / lengths[1];
+    const height = Math.max(lengths[1], lengths[0] / shape);
+    const [x, y] = [height * shape, height].map((length, i) => intervalAbout(middles[i], length, all[i]));
+    const box = [x[0], y[0], x[1] - x[0], y[1] - y[0]];
     this.svg.setAttribute("viewBox", box.map((value) => value.toFixed(2)).join(" "));
+  }
+
+  build() {
+    this.frame();
     this.environment = this.data.scene.environment.map((shape) => ({
       name: shape.name,
       path: svgElement("path", { d: this.shadow(shape), "fill-opacity": 0.45 }),
