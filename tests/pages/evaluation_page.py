@@ -164,6 +164,9 @@ def main(failures):
                     fall_back(browser, page, failures)
                     continue  # words and numbers are the same
                 tick_by_key(browser, page, failures)
+                browser.open(page, fragment="#step=1.5")
+                browser.wait_for(f"{ROOT}.ready === 'true'")
+                failures.check(browser.evaluate(f"{ROOT}.step") == "1", f"{page.stem}: does not open at #step=1.5")
                 browser.open(made[2][0])
                 browser.wait_for(f"{ROOT}.ready === 'true'")
                 choose(browser, f"two {webgl}", made[2][1], failures)

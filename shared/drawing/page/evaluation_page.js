@@ -41,7 +41,9 @@ class EvaluationPage {
     const failed = recordings.find((entry) => this.data.outcomes[entry.outcome].class !== "succeeded");
     const first = asked ? Number(asked[1]) : (failed || recordings[0])?.run;
     this.replay(own, first);
-    this.player.jump(this.current ? this.current.end : 0);
+    const step = /step=([\d.]+)/.exec(location.hash);
+    const time = step ? this.current?.timeOf(Number(step[1])) : this.current?.end;
+    this.player.jump(time ?? 0);
     document.documentElement.dataset.ready = "true";
   }
 

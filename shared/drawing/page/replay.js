@@ -66,6 +66,15 @@ class Replay {
     return this.recording.steps[this.indexAt(time)];
   }
 
+  // The first moment of a step, or the one of 2.5 halfway to the last; the end for one that never ran.
+  timeOf(step) {
+    const { steps, times_s } = this.recording;
+    const whole = Math.floor(step);
+    const first = steps.indexOf(whole);
+    if (first < 0) return this.end;
+    return times_s[first] + (step - whole) * (times_s[steps.lastIndexOf(whole)] - times_s[first]);
+  }
+
   // What is felt in the moment that ends at or after the time, N or Nm.
   wrenchAt(time, axis) {
     const next = Math.min(this.indexAt(time - 1e-6) + 1, this.recording.times_s.length - 1);
