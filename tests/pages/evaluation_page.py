@@ -15,7 +15,7 @@ import tempfile
 
 from browser import Browser, run_test
 from on_paper import print_page
-from plan_page import BYTES_MAX, ROOT, SMALL, look_at, press
+from plan_page import BYTES_MAX, ROOT, SMALL, look_at, press, stay_as_high
 from rise import fall_back, stay_put, tick_by_key
 
 # Worlds in which some runs of a plan fail, in several ways, and those in which none begins.
@@ -164,6 +164,7 @@ def main(failures):
                     fall_back(browser, page, failures)
                     continue  # words and numbers are the same
                 tick_by_key(browser, page, failures)
+                stay_as_high(browser, page, failures)
                 browser.open(page, fragment="#step=1.5")
                 browser.wait_for(f"{ROOT}.ready === 'true'")
                 failures.check(browser.evaluate(f"{ROOT}.step") == "1", f"{page.stem}: does not open at #step=1.5")

@@ -183,6 +183,22 @@ def play(browser, file, failures):
     failures.check(not browser.said(), f"{name}: says something while it plays")
 
 
+def stay_as_high(browser, file, failures):
+    """From step to step, where the words stand below the scene: nothing under them moves while it plays."""
+    for width in (SMALL, 390):
+        browser.open(file, width=width, fragment="#step=0")
+        browser.wait_for(f"{ROOT}.ready === 'true'")
+        press(browser, "Home")
+        heights = {}
+        while True:
+            step = browser.evaluate(f"new Promise(requestAnimationFrame).then(() => {ROOT}.step)")
+            heights[step] = browser.evaluate("document.querySelector('main').getBoundingClientRect().height")
+            if step == "end":
+                break
+            press(browser, "ArrowRight")
+        failures.check(len(set(heights.values())) == 1, f"{file.stem} at {width} px: step by step as high as {heights}")
+
+
 def show_the_spread(browser, file, failures):
     """The flat scene has a whisker of two standard deviations each way along each axis; none is told to be zero."""
     browser.open(file, fragment="#step=1.5")
@@ -267,6 +283,7 @@ def main(failures):
                     continue  # words and numbers are the same
                 tick_by_key(browser, files[0], failures)
                 show_the_spread(browser, files[0], failures)
+                stay_as_high(browser, files[0], failures)
                 for file in files:
                     text = print_page(browser, file, failures, arguments.pictures)
                     failures.check("\n0\t" in text, f"{file.stem}: the moves have no numbers in print")

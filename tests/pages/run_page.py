@@ -20,7 +20,7 @@ import time
 from browser import Browser, run_test
 from looked_at import LookedAt
 from on_paper import print_page
-from plan_page import BYTES_MAX, ROOT, SMALL, look_at, press
+from plan_page import BYTES_MAX, ROOT, SMALL, look_at, press, stay_as_high
 from rise import fall_back, stay_put, tick_by_key
 
 PLAN = "box_4_gantry3"
@@ -324,6 +324,7 @@ def main(failures):
                 tell(browser, pages, failures)
                 tell_contacts(arguments, browser, pages["box"], failures)
                 tick_by_key(browser, pages["box"], failures)
+                stay_as_high(browser, pages["box"], failures)
                 for name in ("box", "fault"):
                     tell_what_lacks(browser, pages[name], failures)
                 open_at(browser, pages["fault"], failures)

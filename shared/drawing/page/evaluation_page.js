@@ -104,6 +104,17 @@ class EvaluationPage {
     this.state = element("div", { class: "words" });
     this.others = element("div", { class: "others" });
     this.stage.now.append(this.heading, this.words, this.state, this.others);
+    this.rooms = [
+      new Room(this.words, () => {
+        if (!this.current) return [];
+        const { recording } = this.current;
+        const ran = [...new Set(recording.steps)];
+        return [...ran.map((step) => this.stepWords(step)), this.ending(recording)];
+      }),
+      new Room(this.state, () =>
+        (this.current?.recording.touching || []).map(({ names }) => this.stateWords(0, names)),
+      ),
+    ];
   }
 
   buildForces(host) {
@@ -140,6 +151,7 @@ class EvaluationPage {
           time >= this.current.end ? "end" : `${time.toFixed(1)} s, step ${this.current.stepAt(time)}`,
       });
       this.chart.setReplay(this.current, axes, "Run " + number);
+      this.rooms.forEach((room) => room.measure());
     }
     document.documentElement.dataset.run = this.current ? number : "";
     this.listOthers();
@@ -218,13 +230,16 @@ class EvaluationPage {
       this.heading.textContent = `Run ${entry.run}, ${ended ? outcome.name : "step " + step}`;
       this.words.replaceChildren(...(ended ? this.ending(entry) : this.stepWords(step)));
     }
-    const names = this.current.touchedAt(time);
+    this.state.replaceChildren(...this.stateWords(time, this.current.touchedAt(time)));
+  }
+
+  stateWords(time, names) {
     const felt = [0, 1, 2].map((axis) => fixed(this.current.wrenchAt(time, axis), 1));
-    this.state.replaceChildren(
+    return [
       termLine("Time", `${time.toFixed(2)} of ${this.current.end.toFixed(2)} s`),
       termLine("Touches", names.length ? names.join(", ") : "nothing"),
       termLine("Feels", `x ${felt[0]}, y ${felt[1]}, z ${felt[2]} N`),
-    );
+    ];
   }
 
   stepWords(step) {

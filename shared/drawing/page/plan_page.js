@@ -100,6 +100,11 @@ class PlanPage {
     });
     const note = element("p", { class: "note" }, "Uncertainty, standard deviation (bar: logarithmic)");
     this.now.append(this.heading, this.words, note, ...this.bars.map((bar) => bar.row));
+    const moves = this.data.steps.map((_, move) => move);
+    new Room(this.words, () => [
+      ...moves.map((move) => this.sentences(move, false)),
+      this.sentences(moves.length - 1, true),
+    ]);
   }
 
   update(time) {

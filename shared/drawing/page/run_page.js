@@ -127,6 +127,14 @@ class RunPage {
     this.words = element("div", { class: "words", "aria-live": "polite" });
     this.state = element("div", { class: "words" });
     this.stage.now.append(this.heading, this.words, this.state);
+    new Room(this.words, () => [
+      ...this.run.spans.flatMap((span) => [this.stepWords(span, false), this.stepWords(span, true)]),
+      this.ending(),
+    ]);
+    const times = [...this.stops(), ...this.run.states.map((state) => state.from_s)];
+    new Room(this.state, () =>
+      times.map((time) => this.sensed(time, stateNameAt(this.run.states, time) || "")),
+    );
     if (this.run.fit) this.stage.now.append(this.fitNote());
   }
 

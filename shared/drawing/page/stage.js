@@ -50,6 +50,34 @@ function termLine(label, text) {
   return element("p", {}, element("span", { class: "term" }, label), " ", text);
 }
 
+// Room for the longest of what an element says in turn, however wide it is, so that what stands below it stays where it
+// is while it changes.
+class Room {
+  // contents: a function that makes all that it says, a list of elements each
+  constructor(host, contents) {
+    this.host = host;
+    this.contents = contents;
+    this.measure(); // before the page is first seen
+    new ResizeObserver(() => {
+      if (host.clientWidth !== this.width) this.measure();
+    }).observe(host);
+  }
+
+  measure() {
+    this.width = this.host.clientWidth;
+    if (!this.width) return;
+    const copy = element("div", { class: "measured", "aria-hidden": "true" });
+    copy.style.width = this.width + "px";
+    for (const lines of this.contents()) {
+      copy.append(element("div", { class: this.host.className }, ...lines));
+    }
+    this.host.after(copy);
+    const heights = [...copy.children].map((child) => child.getBoundingClientRect().height);
+    copy.remove();
+    this.host.style.setProperty("--room", Math.ceil(Math.max(0, ...heights)) + "px");
+  }
+}
+
 class Stage {
   constructor(host, data, controls, legend) {
     this.host = host;
