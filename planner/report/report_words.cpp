@@ -1,6 +1,7 @@
 #include "planner/report/report_words.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "shared/base/shown.h"
 #include "shared/base/text.h"
@@ -16,6 +17,7 @@ std::string names_of(const std::set<std::string>& names) {
 
 std::string amount(double value, int axis) {
   const double told = shown(value, axis);
+  if (std::abs(told) < (axis < 3 ? 0.5e-3 : 0.5e-4)) return axis < 3 ? "0 mm" : "0\u00b0";
   if (axis < 3) return format(told < 0.1 ? "%.3f mm" : "%.1f mm", told);
   return format(told < 0.01 ? "%.4f\u00b0" : "%.2f\u00b0", told);
 }

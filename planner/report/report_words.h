@@ -15,7 +15,8 @@ inline constexpr double kCollapsed = 0.2;
 /// "wall, table", escaped.
 [[nodiscard]] std::string names_of(const std::set<std::string>& names);
 
-/// "1.2 mm" or degrees, of m or rad; with two digits more where little is left.
+/// "1.2 mm" or degrees, of m or rad; with two digits more where little is left, without any where
+/// that would be all zeros.
 [[nodiscard]] std::string amount(double value, int axis);
 
 /// The contacts that every run had, and those that only some had: "+z, possible -x".

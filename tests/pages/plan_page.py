@@ -222,6 +222,9 @@ def show_the_spread(browser, file, failures):
     zeros = [text for text in told if re.search(r"(^|\s)0(\.0+)?( mm|°)", text)]
     failures.check(told and not zeros, f"{file.stem}: on a logarithmic scale stand {zeros}")
     failures.check(any(f"{least:.2g} mm" in text for text in told), f"{file.stem}: {least} mm is not among {told}")
+    for amount, wanted in (("0, 0", "0 mm"), ("-4e-6, 0", "0 mm"), ("1e-6, 3", "0°"), ("6e-6, 0", "0.01 mm")):
+        found = browser.evaluate(f"amount({amount})")
+        failures.check(found == wanted, f"{file.stem}: amount({amount}) is '{found}', not '{wanted}'")
 
 
 def tell_the_search(browser, file, statistics, failures):

@@ -36,10 +36,11 @@ function fixed(value, digits) {
   return value.toFixed(digits).replace(/^-(?=[0.]*$)/, "");
 }
 
+// What rounds to zero is told without digits, which would promise that they are known.
 function amount(value, axis) {
   const number = shown(value, axis);
-  const digits = Math.abs(number) < 10 ? 2 : 1;
-  return fixed(number, digits) + (axis < 3 ? " mm" : "°");
+  const text = fixed(number, Math.abs(number) < 10 ? 2 : 1);
+  return (Number(text) === 0 ? "0" : text) + (axis < 3 ? " mm" : "°");
 }
 
 // Of what is drawn on a logarithmic scale: two digits that count however small it is.
