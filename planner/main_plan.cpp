@@ -51,6 +51,7 @@ struct Arguments {
   std::optional<std::uint64_t> move_limit;
   double improve_s = 0.0;
   bool exact_search = false;
+  bool strict = false;
   bool verbose = false;
   bool check = false;
   NewTaskArguments new_task;
@@ -85,7 +86,8 @@ void describe(CLI::App& app, Arguments& a) {
   app.footer(
       "Exit status:\n"
       "  0  a plan is written; --check: nothing is wrong; --new-task: a task is written\n"
-      "  1  there is no plan, and the last line says why; or a file could not be written\n"
+      "  1  there is no plan, and the last line says why; or a file could not be written;\n"
+      "     or, with --strict, a plan is written but its success is doubtful\n"
       "  2  bad input, or a place that nothing can be written to; --check: something is wrong\n\n"
       "Examples:\n"
       "  tenon-plan --check planner/tasks/box_on_table_2d.yaml\n"
@@ -127,8 +129,12 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_flag("-v,--verbose", a.verbose, "Say on standard error what has been found and refuted");
   app.add_option("-o,--output", a.output,
                  "Plan file to write, of --new-task the task file; required but for --check");
-  app.add_flag("--check", a.check,
-               "Plan nothing: say what of the task is understood, and what is wrong with it");
+  CLI::Option* check =
+      app.add_flag("--check", a.check,
+                   "Plan nothing: say what of the task is understood, and what is wrong with it");
+  app.add_flag("--strict", a.strict,
+               "Exit status 1 where a warning says that too few random starts end at the goal")
+      ->excludes(check, app.get_option("--new-task"));
   app.add_option("--report", a.report,
                  "HTML file: the plan, played step by step, and why it works; with --check "
                  "pictures of scene, starts, particles and goal");
@@ -224,8 +230,9 @@ int tell(const Arguments& a, const planner::PlanReport& report, const Task& task
   }
   if (a.json != "-") std::fputs(planner::summary(report, task, a.output).c_str(), stdout);
   const std::string doubt = planner::doubt_text(report.validation, task);
-  if (!doubt.empty()) std::fprintf(stderr, "tenon-plan: warning: %s\n", doubt.c_str());
-  return 0;
+  if (doubt.empty()) return 0;
+  std::fprintf(stderr, "tenon-plan: warning: %s\n", doubt.c_str());
+  return a.strict ? 1 : 0;
 }
 
 int run(const Arguments& a) {
