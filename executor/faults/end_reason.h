@@ -44,8 +44,9 @@ enum class EndReason : std::uint8_t {
   kZeroMoved = 33,       ///< index: wrench axis; value: mean at the end, nothing touching, bound
   kNotDisabled = 34,     ///< index: joint whose drive has not said that it is off; value: s waited
   kNotHeld = 35,         ///< index: joint; value: m or rad from its command, bound: m, of the tool
+  kEffortFrozen = 36,    ///< index: joint; value: cycles of its motion with the same effort
 };
-inline constexpr EndReason kLastEndReason = EndReason::kNotHeld;
+inline constexpr EndReason kLastEndReason = EndReason::kEffortFrozen;
 [[nodiscard]] const char* to_string(EndReason reason);
 
 /// How the motion comes to rest.

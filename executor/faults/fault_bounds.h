@@ -20,6 +20,7 @@ inline constexpr int kTareSamples = 200;
 inline constexpr int kTareTries = 5;              ///< while the sensor is not steady
 inline constexpr int kFrozenSamples = 7;          ///< equal ones in a row
 inline constexpr int kFrozenAxisSamples = 72;     ///< of one axis alone, at the most
+inline constexpr int kFrozenEffortCycles = 72;    ///< of a joint's motion, at the most
 inline constexpr int kTouchSamples = 2;           ///< above the threshold that make a contact
 inline constexpr int kLateCyclesMost = 50;        ///< at once
 inline constexpr int kIncompleteCyclesMost = 30;  ///< at once

@@ -208,6 +208,10 @@ constexpr std::array kTable = {
           "tool's pose against its command, from the plan's end until the brakes hold: half of the "
           "goal's tolerance, in the brakes all of it",
           {.cycles = 2, .time_s = kHeldPatience_s}, "an error beyond that", EndManner::kHold),
+    fault(EndReason::kEffortFrozen, "effort_frozen",
+          "where efforts tell the force: every joint's effort against the one before, while the "
+          "joint moves",
+          {.cycles = kFrozenEffortCycles + 2}, "the fault, in cycles of the joint's motion"),
 };
 
 constexpr bool every_reason_has_a_row() {

@@ -55,7 +55,10 @@ ControlTask::ControlTask(const Cell& cell, const Parameters& parameters)
       drift_watch_(drift_parameters(cell.robot.sensor, sensor_tare_, parameters.tare_samples)),
       brake_watch_(cell_.robot, parameters.brakes),
       joints_(cell_.robot, kinematics_) {
-  if (cell.joint_torque) joint_torque_.emplace(cell);
+  if (cell.joint_torque) {
+    joint_torque_.emplace(cell);
+    effort_watch_.emplace(cell);
+  }
   parameters_.quick_stop_s = std::max(parameters_.quick_stop_s, time_to_rest_s(cell_.robot));
 }
 
@@ -63,6 +66,8 @@ ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& 
   motion_ns_ += cycle_ns_;
   ArmFeedback feedback = heard;
   if (joint_torque_) joint_torque_->feel(feedback);
+  // First: what it leads to is felt and seen as well.
+  if (effort_watch_) watch_efforts(feedback);
   if (const auto ending = supervision_.update(feedback, following())) {
     // An encoder that jumps is no joint that slips.
     if (ending->reason == EndReason::kEncoderJump) brake_watch_.shift(ending->index, ending->value);
@@ -85,6 +90,17 @@ ControlTask::Command ControlTask::cycle(std::int64_t now_ns, const ArmFeedback& 
   power_asked_ = power_asked_ || command.request == ArmRequest::kEnabled;
   write_record(now_ns, feedback, command);
   return command;
+}
+
+void ControlTask::watch_efforts(const ArmFeedback& feedback) {
+  if (!following()) return effort_watch_->let_go();
+  if (!feedback.wrench_fresh) return;  // a joint has not answered
+  const auto frozen =
+      effort_watch_->update(feedback, joints_.position(), joint_torque_->external());
+  if (!frozen) return;
+  take(Ending{.reason = EndReason::kEffortFrozen,
+              .index = frozen->joint,
+              .value = static_cast<double>(frozen->cycles)});
 }
 
 // An arm that is held falls where nobody has something under it: that is for the user to say.
@@ -140,6 +156,7 @@ ControlTask::Turn ControlTask::enter_state(State state) {
   if (state == State::kTaring) {
     joints_.rest_at(supervision_.joints());
     tare_low_ = tare_high_ = supervision_.joints();
+    if (effort_watch_) effort_watch_->begin_tare();
   }
   if (state == State::kQuickStopping) {
     rest_at_ = supervision_.joints();

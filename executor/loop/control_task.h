@@ -21,6 +21,7 @@
 #include "executor/record/cycle_record.h"
 #include "executor/sensing/brake_watch.h"
 #include "executor/sensing/drift_watch.h"
+#include "executor/sensing/effort_watch.h"
 #include "executor/sensing/joint_torque_wrench.h"
 #include "executor/sensing/sensor_tare.h"
 #include "executor/states/ending.h"
@@ -165,6 +166,7 @@ class ControlTask {
   [[nodiscard]] Turn wait_for_rest(const ArmFeedback& feedback);
   [[nodiscard]] Turn wait_for_disabled(const ArmFeedback& feedback);
   [[nodiscard]] std::uint32_t joints_off(const ArmFeedback& feedback) const;
+  void watch_efforts(const ArmFeedback& feedback);
   void follow_brakes(const ArmFeedback& feedback);
   [[nodiscard]] Turn watch_brakes(const ArmFeedback& feedback);
   [[nodiscard]] bool brakes_under_watch() const;
@@ -179,6 +181,7 @@ class ControlTask {
   std::int64_t cycle_ns_;
   ToolKinematics kinematics_;
   std::optional<JointTorqueWrench> joint_torque_;
+  std::optional<EffortWatch> effort_watch_;  ///< where those efforts are used
   Supervision supervision_;
   SensorTare sensor_tare_;
   int unsteady_tares_ = 0;

@@ -82,6 +82,7 @@ ControlTask::Turn ControlTask::end_tare() {
       return steadily ? *drift_ : unsteady(sensor_tare_);
     }
     sensor_tare_.start_again();
+    if (effort_watch_) effort_watch_->begin_tare();
     drift_watch_.restart();
     drift_.reset();
     return {};
@@ -89,6 +90,7 @@ ControlTask::Turn ControlTask::end_tare() {
   const Vector6& mean = sensor_tare_.mean();
   const Vector6 zero = joint_torque_ ? joint_torque_->settle(mean) : mean;
   if (const auto pushed = supervision_.tare(zero)) return *pushed;
+  if (effort_watch_) effort_watch_->end_tare();
   drift_watch_.restart();
   return Event::kTared;
 }

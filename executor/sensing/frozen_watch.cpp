@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "executor/sensing/repetition.h"
+
 namespace tenon::executor {
 namespace {
 
@@ -23,7 +25,8 @@ double chance_of_the_same_wrench(const ForceTorqueSensor& sensor) {
 }  // namespace
 
 FrozenWatch::FrozenWatch(const ForceTorqueSensor& sensor)
-    : watches_(std::pow(chance_of_the_same_wrench(sensor), kFrozenSamples - 1) <= kChanceMost) {
+    : watches_(std::pow(chance_of_the_same_wrench(sensor), kFrozenSamples - 1) <=
+               kRepetitionChanceMost) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     axes_[i].chance = i < 3 ? chance_of_a_count(sensor.force_noise_N, sensor.force_per_count_N)
                             : chance_of_a_count(sensor.torque_noise_Nm, sensor.torque_per_count_Nm);
@@ -52,17 +55,10 @@ std::optional<FrozenWatch::Frozen> FrozenWatch::update(const Vector6& raw, std::
   return frozen;
 }
 
-// An axis that repeats itself in less than nearly every second pair does so wherever in a count it
-// stands, and half as often again at the most; one that is quieter may stand still for ever.
 void FrozenWatch::learn(Axis& axis) const {
-  constexpr double kShareMost = 0.45;
-  constexpr double kHalfAgain = 1.5;
-  const double repeats = axis.repeats;
-  const double share = (repeats + 3.0 * std::sqrt(repeats) + 9.0) / kLearnedPairs;
-  const double chance = std::max(axis.chance, kHalfAgain * share);
-  if (!watches_ || share > kShareMost || axis.chance > kHalfAgain * kShareMost) return;
-  const double pairs = std::ceil(std::log(kChanceMost) / std::log(chance));
-  axis.samples_max = std::min(static_cast<int>(pairs), kFrozenAxisSamples - 1);
+  if (!watches_) return;
+  axis.samples_max =
+      equal_samples_most(axis.repeats, kLearnedPairs, axis.chance, kFrozenAxisSamples - 1);
 }
 
 }  // namespace tenon::executor

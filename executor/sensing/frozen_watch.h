@@ -20,8 +20,6 @@ class FrozenWatch {
     int samples = 0;  ///< in a row that were equal
   };
 
-  /// That a sensor which is alive is named all the same, each sample: once in 60 years at 500 Hz.
-  static constexpr double kChanceMost = 1e-12;
   /// A sensor may be so much quieter than its data sheet says, or filtered.
   static constexpr double kQuieter = 10.0;
   /// How often an axis repeats itself is seen in its first pairs of samples.

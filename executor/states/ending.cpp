@@ -147,6 +147,13 @@ std::string encoder_jump(const Ending& e, const Joint& joint) {
       static_cast<int>(joint.node), joint.name.c_str(), e.value, joint_unit(joint), e.bound);
 }
 
+std::string effort_frozen(const Ending& e, const Joint& joint) {
+  return format(
+      "node %d (%s) has reported the same effort for %.0f cycles in which its joint moved: it "
+      "measures no more; see to its current sensor, and to what its feedback maps",
+      static_cast<int>(joint.node), joint.name.c_str(), e.value);
+}
+
 std::string feedback_poor(const Ending& e) {
   return format("feedback was missing in %.0f cycles, too many for what the plan was made for",
                 e.value);
@@ -249,6 +256,7 @@ std::string of_a_joint(const Ending& e, const Cell& cell, const Plan& plan) {
   if (e.reason == EndReason::kJointSpeed) return joint_speed(e, joint);
   if (e.reason == EndReason::kFeedbackMissing) return feedback_missing(e, joint);
   if (e.reason == EndReason::kEncoderJump) return encoder_jump(e, joint);
+  if (e.reason == EndReason::kEffortFrozen) return effort_frozen(e, joint);
   if (e.reason == EndReason::kNotDisabled) return not_disabled(e, joint);
   if (e.reason == EndReason::kNotHeld) return not_held(e, joint);
   return following_error(e, joint);
@@ -315,6 +323,7 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kEncoderJump:
     case EndReason::kNotDisabled:
     case EndReason::kNotHeld:
+    case EndReason::kEffortFrozen:
       return of_a_joint(e, cell, plan);
   }
   return "?";

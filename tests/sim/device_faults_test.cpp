@@ -65,6 +65,35 @@ TEST(DeviceFaultsTest, AnEmergencyOfADriveIsAFault) {
   EXPECT_EQ(bench.value({0x603F}), 0x2310U);
 }
 
+TEST(DeviceFaultsTest, AFrozenEffortIsReportedAgainAndAgainWhileTheDriveGoesOn) {
+  DriveBench bench;
+  bench.configure();
+  bench.enable();
+  bench.torque_permille = 100.0;
+  bench.pass(1);
+  bench.drive.inject({.kind = FaultKind::kFrozenEffort, .duration_s = 0.1});
+  bench.torque_permille = 250.0;
+  bench.run_fast();
+  EXPECT_EQ(bench.value({0x6077}), 100U);
+  EXPECT_EQ(bench.drive.state(), DriveState::kOperationEnabled);
+  bench.pass(100);
+  EXPECT_EQ(bench.value({0x6077}), 250U);
+}
+
+// Noise is the current sensor's, which is under power with its drive; what else the drive does goes
+// by the true torque.
+TEST(DeviceFaultsTest, ADriveUnderPowerMisreadsItsEffortByItsNoise) {
+  DriveBench bench;
+  bench.plant.torque_off_permille = 3.0;
+  bench.pass(1);
+  EXPECT_EQ(bench.value({0x6077}), 0U);
+  bench.configure();
+  bench.enable();
+  bench.torque_permille = 100.0;
+  bench.pass(1);
+  EXPECT_EQ(bench.value({0x6077}), 103U);
+}
+
 // The encoder jumps by +2 mm (1,000 counts a mm): the servo sees itself ahead and pulls back.
 TEST(DeviceFaultsTest, AnEncoderJumpReadsFurtherAndTheServoFollowsItsEncoder) {
   DriveBench bench({.node = 5, .counts_per_unit = 1e6});

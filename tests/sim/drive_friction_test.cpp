@@ -1,5 +1,5 @@
 // Friction of the virtual drives: what it adds to the effort that a drive reports, by numbers
-// worked out by hand, and that the arm moves as without it.
+// worked out by hand, and that the arm moves as without it; and what noise adds.
 
 #include "sim/cell/virtual_arm/drive_friction.h"
 
@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "sim/cell/virtual_arm/effort_mean.h"
 #include "sim/cell/virtual_arm/world_draw.h"
 #include "tests/sim/literal_cell.h"
 
@@ -112,6 +113,51 @@ TEST(DriveFrictionTest, ADriveReportsItAndTheArmMovesAsWithout) {
     const Moved rubbed = moved(rough, way);
     EXPECT_NEAR(rubbed.permille - smooth.permille, way > 0 ? 60.0 : -60.0, 1.0);
     EXPECT_EQ(rubbed.counts, smooth.counts);
+  }
+}
+
+// -- Beside friction: the mean of a cycle, and noise
+// -----------------------------------------------
+
+TEST(EffortMeanTest, IsTheMeanOfTheLastCycle) {
+  EffortMean mean(1, 4, 0.0, 1);
+  for (int step = 1; step <= 10; ++step) {
+    mean.add(0, step);
+    mean.next();
+    EXPECT_EQ(mean.off_permille(0), 0.0);
+  }
+  EXPECT_DOUBLE_EQ(mean.of(0), (7.0 + 8.0 + 9.0 + 10.0) / 4.0);
+}
+
+// Of 10,000 cycles the deviation is known to 0.7 %.
+TEST(EffortMeanTest, NoiseIsAsWideAsItIsToBeAndAnewInEveryCycle) {
+  constexpr int kCycles = 10'000;
+  EffortMean mean(2, 4, 2.0, 1);
+  double squares = 0.0;
+  double products = 0.0;
+  for (int cycle = 0; cycle < kCycles; ++cycle) {
+    for (int step = 0; step < 4; ++step) {
+      const double before = mean.off_permille(0);
+      mean.next();
+      EXPECT_EQ(mean.off_permille(0) != before, step == 3) << cycle;
+    }
+    squares += mean.off_permille(0) * mean.off_permille(0);
+    products += mean.off_permille(0) * mean.off_permille(1);
+  }
+  EXPECT_NEAR(std::sqrt(squares / kCycles), 2.0, 0.06);
+  EXPECT_NEAR(products / kCycles, 0.0, 0.16) << "two drives have nothing in common";
+}
+
+TEST(EffortMeanTest, NoiseIsTheSameForTheSameSeedAndOfADriveWhateverOthersThereAre) {
+  EffortMean one(1, 1, 2.0, 7);
+  EffortMean three(3, 1, 2.0, 7);
+  EffortMean other(1, 1, 2.0, 8);
+  for (int cycle = 0; cycle < 100; ++cycle) {
+    one.next();
+    three.next();
+    other.next();
+    EXPECT_EQ(one.off_permille(0), three.off_permille(0));
+    EXPECT_NE(one.off_permille(0), other.off_permille(0));
   }
 }
 

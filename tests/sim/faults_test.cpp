@@ -100,7 +100,7 @@ TEST(FaultSpec, WhatIsWrongIsSaidInOneLineWithItsBound) {
 
 TEST(FaultSpec, HelpNamesEveryKindInALineAndItsExamplesAreGood) {
   const std::string help = fault_help();
-  for (int kind = 0; kind <= static_cast<int>(FaultKind::kOverrangeForce); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(FaultKind::kFrozenEffort); ++kind) {
     const std::string name = to_string(static_cast<FaultKind>(kind));
     const std::size_t at = help.find("\n" + name + " ");
     ASSERT_NE(at, std::string::npos) << name;

@@ -73,6 +73,22 @@ TEST_F(MitDriveTest, AnswersEveryFrameWithWhatTheAxisDoes) {
   EXPECT_EQ(ask(0x002, kEnableFrame).length, 0) << "of another motor";
 }
 
+TEST_F(MitDriveTest, AFrozenEffortIsReportedAgainAndAgainAndNoiseWhileItIsOn) {
+  const auto torque_counts = [](const CanFrame& frame) {
+    return (frame.data[4] & 0x0FU) << 8U | frame.data[5];
+  };
+  const VirtualDrive::Measurement measured = {0.0, 0.0, 250.0, 50.0};
+  drive.measured(measured, kMs_ns);
+  const auto off = torque_counts(ask(0x001, kDisableFrame));
+  enable_in_mit_mode();
+  drive.measured(measured, kMs_ns);
+  const auto on = torque_counts(ask(0x001, kCommandOfOnes));
+  EXPECT_GT(on, off);
+  drive.inject({.kind = FaultKind::kFrozenEffort, .node = 1});
+  drive.measured({0.0, 0.0, -250.0, 0.0}, kMs_ns);
+  EXPECT_EQ(torque_counts(ask(0x001, kCommandOfOnes)), on);
+}
+
 TEST_F(MitDriveTest, ObeysStiffnessDampingAndTorqueOfTheCommand) {
   enable_in_mit_mode();
   EXPECT_EQ(ask(0x001, kCommandOfOnes).data[0], 0x11);

@@ -51,6 +51,7 @@ sim::VirtualCell::Options world_of(const WholeRun::Options& options) {
   world.world = options.world;
   world.joints = options.joints;
   world.twins = options.twins;
+  world.effort_noise_permille = options.effort_noise_permille.value_or(world.effort_noise_permille);
   return world;
 }
 

@@ -42,7 +42,9 @@ class WholeRun {
     std::map<std::uint8_t, DeviceFile> twins{};  ///< by node
     sim::WorldDraw world;
     std::optional<JointVector> joints;  ///< where the arm stands; unset: at the start
-    sim::Link* link = nullptr;          ///< in place of the virtual bus; must outlive the run
+    /// Of what drives report of their efforts; unset: the virtual arm's.
+    std::optional<double> effort_noise_permille{};
+    sim::Link* link = nullptr;  ///< in place of the virtual bus; must outlive the run
     /// What is executed where it was made already, for this cell or another; unset: by the run.
     std::optional<executor::DryRun> dry_run = std::nullopt;
     /// Called with every setpoint on its way from the executor to the arm; empty: left alone.

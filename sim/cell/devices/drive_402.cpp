@@ -281,7 +281,10 @@ void Drive402::measured(const Measurement& measurement, std::int64_t step_ns) {
       motion_.powered() ? motion_.position_counts() - measurement_.position_counts : 0.0;
   set(objects_.position_actual, std::llround(measurement_.position_counts));
   set(objects_.velocity_actual, std::llround(measurement_.velocity_countsps));
-  set(objects_.torque_actual, std::llround(measurement_.torque_permille));
+  if (faults_.find(FaultKind::kFrozenEffort) == nullptr) {
+    const double off = motion_.powered() ? measurement_.torque_off_permille : 0.0;
+    set(objects_.torque_actual, std::llround(measurement_.torque_permille + off));
+  }
   set(objects_.position_demand, std::llround(measurement_.position_counts + error_counts));
   set(objects_.following_error, std::llround(error_counts));
   update_statusword();

@@ -52,8 +52,9 @@ class Drive402 final : public VirtualDrive, private NodeApplication {
   void set_supply(double volts);
 
   /// Begins a fault now, that is at the time of the last advance(): node reset, silent node,
-  /// emergency, encoder jump, brake failure, torque loss, frozen drive, and the ways in which a
-  /// drive may be unkind. Whether it happens is drawn once. Others are not a drive's, and ignored.
+  /// emergency, encoder jump, brake failure, torque loss, frozen drive, frozen effort, and the ways
+  /// in which a drive may be unkind. Whether it happens is drawn once. Others are not a drive's,
+  /// and ignored.
   void inject(const Fault& fault) override;
   [[nodiscard]] bool can_have(const Fault& fault) const override;
   [[nodiscard]] Look look() const override;

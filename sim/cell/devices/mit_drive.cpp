@@ -137,8 +137,8 @@ void MitDrive::answer() {
   report.position_rad = measurement_.position_counts / counts_per_rad() - real(mit::kPositionMax);
   report.velocity_radps = measurement_.velocity_countsps / counts_per_rad();
   // Effort comes in the joint's direction.
-  report.torque_Nm = std::copysign(1.0, counts_per_unit_) * measurement_.torque_permille /
-                     kPermilleOfRated * rated_effort_;
+  report.torque_Nm =
+      std::copysign(1.0, counts_per_unit_) * torque_permille_ / kPermilleOfRated * rated_effort_;
   report.board_degC = report.coil_degC = kRoom_degC;
   outbox_.push_back(report_frame(registers_.at(mit::kMasterId), report, ranges()));
 }
@@ -185,6 +185,9 @@ VirtualDrive::Demand MitDrive::demand(std::int64_t /*step_ns*/) {
 void MitDrive::measured(const Measurement& measurement, std::int64_t /*step_ns*/) {
   measurement_ = measurement;
   measurement_.position_counts += jump_rad_ * counts_per_rad();
+  if (faults_.find(FaultKind::kFrozenEffort) != nullptr) return;
+  const double off = state_ == mit::kStateOn ? measurement.torque_off_permille : 0.0;
+  torque_permille_ = measurement.torque_permille + off;
 }
 
 // --- time and faults -----------------------------------------------------------------------------
@@ -201,9 +204,9 @@ void MitDrive::advance(std::int64_t now_ns) {
 }
 
 bool MitDrive::can_have(const Fault& fault) const {
-  constexpr std::array kKinds = {FaultKind::kNodeReset, FaultKind::kSilentNode,
+  constexpr std::array kKinds = {FaultKind::kNodeReset,   FaultKind::kSilentNode,
                                  FaultKind::kEncoderJump, FaultKind::kTorqueLoss,
-                                 FaultKind::kFrozenDrive};
+                                 FaultKind::kFrozenDrive, FaultKind::kFrozenEffort};
   if (fault.kind == FaultKind::kEmergency) {
     return fault.value >= mit::kErrorOverVoltage && fault.value <= mit::kErrorOverload;
   }

@@ -35,8 +35,9 @@ class MitDrive final : public VirtualDrive {
   [[nodiscard]] Demand demand(std::int64_t step_ns) override;
   void measured(const Measurement& measurement, std::int64_t step_ns) override;
 
-  /// Node reset, silence, encoder jump, torque loss, a motor that stands still under power, and an
-  /// "emergency" whose code is an error of its own, 8 to Eh. It has no brake that could fail.
+  /// Node reset, silence, encoder jump, torque loss, a motor that stands still under power, a
+  /// torque that it reports again and again, and an "emergency" whose code is an error of its own,
+  /// 8 to Eh. It has no brake that could fail.
   [[nodiscard]] bool can_have(const Fault& fault) const override;
   void inject(const Fault& fault) override;
   [[nodiscard]] Look look() const override;
@@ -64,6 +65,7 @@ class MitDrive final : public VirtualDrive {
   std::optional<double> frozen_rad_;  ///< of a fault
   double jump_rad_ = 0.0;             ///< of a fault, in the motor's direction
   Measurement measurement_;
+  double torque_permille_ = 0.0;  ///< as it reports it
   ActiveFaults faults_;
   std::vector<CanFrame> outbox_;
 };

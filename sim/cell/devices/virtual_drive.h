@@ -36,6 +36,8 @@ class VirtualDrive {
     double position_counts = 0.0;
     double velocity_countsps = 0.0;
     double torque_permille = 0.0;  ///< of rated
+    /// By which a drive under power misreads that, of rated. What it does goes by the true one.
+    double torque_off_permille = 0.0;
   };
 
   /// What there is to see of it.

@@ -40,6 +40,8 @@ enum class FaultKind : std::uint8_t {
   kWrongUnits = 23,      ///< it reads `value` times what it feels, as if in another unit
   kWrongMatrix = 24,     ///< x reads y, y reads z, z reads x, as by another sensor's calibration
   kOverrangeForce = 25,  ///< it tells by its own means that it is loaded beyond its range
+  // In a drive.
+  kFrozenEffort = 26,  ///< the effort that it reports stays as it was
 };
 
 /// Who carries it out.
@@ -71,6 +73,7 @@ enum class FaultTarget : std::uint8_t {
     case FaultKind::kKeepsPower:
     case FaultKind::kSlowBrake:
     case FaultKind::kResumesStop:
+    case FaultKind::kFrozenEffort:
       return FaultTarget::kDrive;
     case FaultKind::kStaleForce:
     case FaultKind::kTornForce:

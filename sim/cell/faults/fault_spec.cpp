@@ -25,7 +25,7 @@ struct Kind {
   const char* example = "";
 };
 
-constexpr std::array<Kind, 26> kKinds{{
+constexpr std::array<Kind, 27> kKinds{{
     {FaultKind::kDrop, "drop", false, nullptr, 0, 0, "a frame is lost for all receivers",
      "drop:node=3,time_s=2,duration_s=0.5,probability=0.1,seed=7"},
     {FaultKind::kDelay, "delay", false, "delay_s", 1e-6, 10.0, "a frame arrives delay_s late",
@@ -92,6 +92,8 @@ constexpr std::array<Kind, 26> kKinds{{
     {FaultKind::kOverrangeForce, "overrange-force", false, nullptr, 0, 0,
      "the sensor tells by its own means that it is loaded beyond its range",
      "overrange-force:at=contact,duration_s=0.01"},
+    {FaultKind::kFrozenEffort, "frozen-effort", true, nullptr, 0, 0,
+     "the effort that the drive reports stays as it was", "frozen-effort:node=3,time_s=3"},
 }};
 
 constexpr std::array<std::string_view, kFaultPhases> kPhaseNames = {"enabling", "free", "sliding",

@@ -98,7 +98,8 @@ class VirtualCell::Impl {
         sensor_(
             virtual_sensor(cell_.robot.sensor, options.seed, sensor_imperfections(options.world))),
         delay_(cell.robot.joints.size(), delay_steps(options)),
-        efforts_(cell.robot.joints.size(), steps_in_cycle(cell.robot, options)),
+        efforts_(cell.robot.joints.size(), steps_in_cycle(cell.robot, options),
+                 options.effort_noise_permille, options.seed),
         cycle_ns_(std::int64_t{1000} * cell.robot.cycle_us) {
     make_friction();
     check_faults();
@@ -304,7 +305,8 @@ VirtualDrive::Measurement VirtualCell::Impl::measure(std::size_t i) const {
   const Joint& joint = cell_.robot.joints[i];
   const ServoJoint::State& state = arm_.joint(i);
   return {state.encoder * joint.counts_per_unit + joint.zero_counts,
-          state.velocity * joint.counts_per_unit, kPermille * efforts_.of(i) / joint.rated_effort};
+          state.velocity * joint.counts_per_unit, kPermille * efforts_.of(i) / joint.rated_effort,
+          efforts_.off_permille(i)};
 }
 
 void VirtualCell::Impl::pass_wrench() {

@@ -34,7 +34,7 @@ class VirtualCell {
  public:
   struct Options {
     std::string start;                  ///< a start of the task; empty: its first
-    std::uint64_t seed = 0;             ///< of the sensor's noise
+    std::uint64_t seed = 0;             ///< of the sensor's noise, and of the drives'
     Vector6 offset = Vector6::Zero();   ///< displacement of the environment, task axes
     WorldDraw world;                    ///< how the real cell and task differ from those given
     std::vector<Fault> faults;          ///< those of devices are carried out, those of the bus not
@@ -42,6 +42,9 @@ class VirtualCell {
     std::optional<JointVector> joints;  ///< unset: tool at the start in the nominal task frame
     /// By node: what that joint's drive answers like.
     std::map<std::uint8_t, DeviceFile> twins{};
+    /// Of what drives under power report of their efforts, in thousandths of the rated one: a few
+    /// counts of 6077h, as of current sensors; standard deviation.
+    double effort_noise_permille = 2.0;
     std::int64_t physics_step_ns = 500'000;
     bool watched = false;  ///< gathers what moment() tells
     /// A clock of the caller's, read before and after each step of physics, for its cost alone.

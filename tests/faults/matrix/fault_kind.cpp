@@ -102,6 +102,17 @@ std::vector<FaultKind> kinds_of_the_executor() {
   };
 }
 
+/// Where efforts tell the force, one that stands still has a name, or has led to a force, a contact
+/// or a way that there is not. In other cells nothing asks for it.
+FaultKind effort_frozen(const Robot& robot) {
+  Names names;
+  if (robot.sensor.absent()) {
+    names = {fault_row(EndReason::kEffortFrozen), fault_row(EndReason::kForceFault),
+             fault_row(EndReason::kPlanFailed)};
+  }
+  return spec("effort frozen", "frozen-effort:node=JOINT", names);
+}
+
 /// What is another fault, or none, where motors speak the MIT mode.
 void adapt_to_motors(FaultKind& kind) {
   const std::string name = kind.name;
@@ -121,6 +132,7 @@ std::vector<FaultKind> fault_kinds(const Robot& robot) {
   for (auto part : {kinds_of_devices(), kinds_of_the_executor()}) {
     for (FaultKind& kind : part) all.push_back(std::move(kind));
   }
+  all.push_back(effort_frozen(robot));
   for (FaultKind& kind : all) {
     kind.master_is_lost = kMasterIsLost.contains(kind.name);
     if (speaks_mit(robot)) adapt_to_motors(kind);

@@ -216,6 +216,26 @@ TEST_P(SensorFaults, EachInEveryPhaseIsRiddenOutOrStoppedByName) {
   EXPECT_GE(count.of(Outcome::Verdict::kStopped), 20);
 }
 
+// A drive whose effort stands still, where that is all that tells the force.
+class EffortFaults : public FaultMatrix {
+ protected:
+  void SetUp() override {
+    std::erase_if(kinds, [](const FaultKind& kind) {
+      return !std::string_view(kind.name).starts_with("effort ");
+    });
+    ASSERT_EQ(kinds.size(), 1U);
+  }
+};
+
+TEST_P(EffortFaults, EachInEveryPhaseIsRiddenOutOrStoppedByName) {
+  const Count count = walked(kinds);
+  EXPECT_GE(count.of(Outcome::Verdict::kStopped), 4);
+}
+
+TEST_P(EffortFaults, WithItsDetectorMaskedACellLosesItsName) {
+  for (const FaultPhase phase : kPhases) (void)loses_its_name(kinds.front(), phase);
+}
+
 std::string subject_name(const ::testing::TestParamInfo<Subject>& info) { return info.param.cell; }
 
 constexpr Subject kOtherArms[] = {
@@ -234,6 +254,9 @@ INSTANTIATE_TEST_SUITE_P(Tree, FaultSample, ::testing::ValuesIn(kOtherArms), sub
 INSTANTIATE_TEST_SUITE_P(Tree, SensorFaults,
                          ::testing::Values(Subject{.cell = "rft_gantry3"},
                                            Subject{.cell = "ati_gantry3"}),
+                         subject_name);
+INSTANTIATE_TEST_SUITE_P(Tree, EffortFaults,
+                         ::testing::Values(Subject{.cell = "torque_gantry3", .plan_of = "gantry3"}),
                          subject_name);
 
 }  // namespace

@@ -49,6 +49,7 @@ class FaultWatch final : public executor::CycleSink {
     if (falls_ && !let_go_) look_while_held(r);
     const bool on = r.arm_state == ArmState::kEnabled && r.request == ArmRequest::kEnabled;
     if (struck_ && on && !followed_) followed_ = cycles_;
+    if (struck_ && !named_ && !over_) count_motion(r);
     if (r.state == executor::State::kTaring && !taring_) taring_ = cycles_;
     if (on && was_on_) look_at_commands(r);
     if (struck_ && post_ && !met_) {
@@ -75,6 +76,8 @@ class FaultWatch final : public executor::CycleSink {
     const executor::EndReason reason = row.reason;
     if (reason == kFollowingError) return behind_;
     if (reason == kBrakeFailed) return off_;
+    // Cycles in which the joint rests do not count.
+    if (reason == kEffortFrozen) return named_.value_or(over_.value_or(cycles_)) - moved_;
     // Of these a joint's way to rest, at its own acceleration, and the truth tell.
     if (reason == kJointLimit) return past_;
     if (reason == kPlanFailed) return met_;
@@ -133,6 +136,13 @@ class FaultWatch final : public executor::CycleSink {
       if ((rest > joint.upper || rest < joint.lower) && !past_ && !named_) past_ = cycles_;
     }
   }
+  /// Of the first joint, which faults strike, by two counts of its encoder.
+  void count_motion(const executor::CycleRecord& r) {
+    const double counts = 2.0 / std::abs(robot_.joints.front().counts_per_unit);
+    if (std::abs(r.position[0] - moved_to_) < counts) return;
+    moved_to_ = r.position[0];
+    ++moved_;
+  }
   void look_while_held(const executor::CycleRecord& r) {
     const sim::Truth truth = truth_();
     const bool on = std::all_of(truth.drives.begin(), truth.drives.end(),
@@ -187,6 +197,8 @@ class FaultWatch final : public executor::CycleSink {
   std::deque<JointVector> commands_;
   std::int64_t cycles_ = 0;
   std::optional<std::int64_t> struck_;
+  std::int64_t moved_ = 0;  ///< cycles since it struck in which the joint moved
+  double moved_to_ = 0.0;
   std::optional<std::int64_t> behind_;
   std::optional<std::int64_t> left_;
   std::optional<std::int64_t> pressed_;
