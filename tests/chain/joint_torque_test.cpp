@@ -38,7 +38,9 @@ JointVector inertia_of_joints(const Cell& cell) {
   return inertia;
 }
 
-// What is hysteresis follows the motion as well, and partly passes for Coulomb's.
+// What is hysteresis follows the motion as well, and partly passes for Coulomb's. Viscous friction
+// of ways as slow as these is next to nothing: the drives' noise moves it by a count per m/s or
+// rad/s, of some three by which hysteresis does.
 TEST_P(FrictionOf, IsFoundOverCanAsItWasDrawn) {
   const Cell cell = torque_cell(GetParam());
   const sim::WorldDraw world = rough_world(0.02, 0.10, 7);
@@ -61,7 +63,7 @@ TEST_P(FrictionOf, IsFoundOverCanAsItWasDrawn) {
         found.joints[i].residual);
     EXPECT_GT(found.joints[i].coulomb, coulomb - count) << joint.name;
     EXPECT_LT(found.joints[i].coulomb, coulomb + hysteresis + count) << joint.name;
-    EXPECT_NEAR(found.joints[i].viscous, viscous, 0.1 * viscous + 3.0 * count) << joint.name;
+    EXPECT_NEAR(found.joints[i].viscous, viscous, 0.1 * viscous + 4.5 * count) << joint.name;
     EXPECT_LT(std::abs(found.joints[i].offset), 0.5 * hysteresis + count) << joint.name;
     const double cycle_s = 1e-6 * cell.robot.cycle_us;
     const double encoder = inertia[i] / joint.counts_per_unit / (cycle_s * cycle_s);
