@@ -19,9 +19,9 @@ enum class EndReason : std::uint8_t {
   kUnreachable = 8,        ///< the command has no joint positions; value: error left in m or rad
   kJointLimit = 9,         ///< index: joint; value: position asked for, bound
   kJointSpeed = 10,        ///< index: joint; value: speed asked for, bound
-  kForceFault = 11,        ///< value: N, bound; index: a joint that stays behind, wanted: by that
-  kTorqueFault = 12,       ///< value: Nm, bound; likewise
-  kSensorSaturated = 13,   ///< index: sensor axis; value: reading, bound
+  kForceFault = 11,        ///< value: N, bound, laggard
+  kTorqueFault = 12,       ///< value: Nm, bound, laggard
+  kSensorSaturated = 13,   ///< index: sensor axis; value: reading, bound, laggard
   kSensorNotFinite = 14,
   kArmFault = 15,         ///< arm_fault
   kArmNotEnabled = 16,    ///< the arm left the enabled state unasked; index: ArmState

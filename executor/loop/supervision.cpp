@@ -30,11 +30,13 @@ std::optional<Ending> Supervision::update(const ArmFeedback& feedback, bool foll
   const std::optional<Ending> force = watch_force(feedback);
   // A jump first: what it leads to is felt and seen later.
   if (jumped) return jumped;
-  if (sensor) return sensor;
+  if (sensor) return with_laggard(*sensor);
   // At the end of its range it is none, and the arm says so.
   const bool believed = feedback.fault.kind != ArmFaultKind::kSensorInvalid;
   if (believed && feedback.force_stopped_N > 0.0) {
-    return of_force(EndReason::kForceFault, feedback.force_stopped_N, cell_.force_fault_N);
+    return with_laggard({.reason = EndReason::kForceFault,
+                         .value = feedback.force_stopped_N,
+                         .bound = cell_.force_fault_N});
   }
   if (arm) return arm;
   return force ? force : astray;
@@ -159,20 +161,25 @@ std::optional<Ending> Supervision::watch_force(const ArmFeedback& feedback) {
   peak_force_N_ = std::max(peak_force_N_, force_N);
   peak_torque_Nm_ = std::max(peak_torque_Nm_, torque_Nm);
   if (force_N > cell_.force_fault_N) {
-    return of_force(EndReason::kForceFault, force_N, cell_.force_fault_N);
+    return with_laggard(
+        {.reason = EndReason::kForceFault, .value = force_N, .bound = cell_.force_fault_N});
   }
   if (torque_Nm > cell_.torque_fault_Nm) {
-    return of_force(EndReason::kTorqueFault, torque_Nm, cell_.torque_fault_Nm);
+    return with_laggard(
+        {.reason = EndReason::kTorqueFault, .value = torque_Nm, .bound = cell_.torque_fault_Nm});
   }
   return std::nullopt;
 }
 
 // A joint that stays behind leads the tool astray before it is too far off itself.
-Ending Supervision::of_force(EndReason reason, double value, double bound) const {
-  Ending ending{.reason = reason, .value = value, .bound = bound};
+Ending Supervision::with_laggard(Ending ending) const {
+  const bool too_large = ending.reason == EndReason::kForceFault ||
+                         ending.reason == EndReason::kTorqueFault ||
+                         ending.reason == EndReason::kSensorSaturated;
+  if (!too_large) return ending;
   if (const auto laggard = following_watch_.laggard()) {
-    ending.index = laggard->joint;
-    ending.wanted = laggard->error;
+    ending.laggard = laggard->joint;
+    ending.lag = laggard->error;
   }
   return ending;
 }

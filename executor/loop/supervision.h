@@ -79,7 +79,7 @@ class Supervision {
   [[nodiscard]] std::optional<Ending> watch_following(const ArmFeedback& feedback, bool following);
   [[nodiscard]] std::optional<Ending> watch_arm(const ArmFeedback& feedback, bool following) const;
   [[nodiscard]] std::optional<Ending> watch_force(const ArmFeedback& feedback);
-  [[nodiscard]] Ending of_force(EndReason reason, double value, double bound) const;
+  [[nodiscard]] Ending with_laggard(Ending ending) const;
 
   Cell cell_;
   const ToolKinematics& kinematics_;

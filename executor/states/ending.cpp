@@ -216,18 +216,21 @@ std::string of_the_sensor(const Ending& e) {
   return format("no wrench for %.3g s, at most %.3g", e.value, e.bound);
 }
 
-std::string too_hard(const Ending& e, const Cell& cell) {
+/// What another drive may have to do with too large a wrench; empty where none stays behind.
+std::string behind(const Ending& e, const Cell& cell) {
+  if (e.laggard < 0) return {};
+  const Joint joint = joint_of(cell, e.laggard);
+  return format(
+      "; just before, node %d (%s) was %.3g %s from where it was commanded: see to that "
+      "drive first",
+      static_cast<int>(joint.node), joint.name.c_str(), e.lag, joint_unit(joint));
+}
+
+std::string too_hard(const Ending& e) {
   const bool force = e.reason == EndReason::kForceFault;
-  std::string text = format(force ? "external force %.4g N above force_fault_N = %.4g"
-                                  : "external torque %.4g Nm above torque_fault_Nm = %.4g",
-                            e.value, e.bound);
-  if (e.index < 0) return text;
-  const Joint joint = joint_of(cell, e.index);
-  return text +
-         format(
-             "; just before, node %d (%s) was %.3g %s from where it was commanded: see to that "
-             "drive first",
-             static_cast<int>(joint.node), joint.name.c_str(), e.wanted, joint_unit(joint));
+  return format(force ? "external force %.4g N above force_fault_N = %.4g"
+                      : "external torque %.4g Nm above torque_fault_Nm = %.4g",
+                e.value, e.bound);
 }
 
 std::string not_held(const Ending& e, const Joint& joint) {
@@ -289,7 +292,7 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
       return unreachable(e);
     case EndReason::kForceFault:
     case EndReason::kTorqueFault:
-      return too_hard(e, cell);
+      return too_hard(e) + behind(e, cell);
     case EndReason::kArmFault:
       return arm_fault(e.arm_fault, arm_fault_text);
     case EndReason::kArmNotEnabled:
@@ -312,7 +315,7 @@ std::string why(const Ending& e, const Plan& plan, const Cell& cell,
     case EndReason::kSensorNotFinite:
     case EndReason::kWrenchFrozen:
     case EndReason::kWrenchMissing:
-      return of_the_sensor(e);
+      return of_the_sensor(e) + behind(e, cell);
     case EndReason::kOtherBranch:
     case EndReason::kTareMoving:
     case EndReason::kJointLimit:

@@ -19,7 +19,9 @@ struct Ending {
   double value = 0.0;
   double bound = 0.0;
   double wanted = 0.0;
-  int step = -1;  ///< that was running, for the reasons about joints
+  int laggard = -1;  ///< a joint that stays behind, of too large a wrench
+  double lag = 0.0;  ///< by that, m or rad
+  int step = -1;     ///< that was running, for the reasons about joints
   Transition transition{};
   ArmFault arm_fault{};
   bool disable_confirmed = true;  ///< false: the arm never said that it is disabled

@@ -60,7 +60,7 @@ TEST(Following, AForceThatNoJointLagsForNamesNone) {
       const std::string spec = std::string("forged-force:force_N=80,at=") + phase;
       const auto result = WholeRun(cell, task, plan, with_faults({spec})).run();
       EXPECT_EQ(result.ending.reason, EndReason::kForceFault) << result.reason;
-      EXPECT_EQ(result.ending.index, -1) << name << " " << spec << ": " << result.reason;
+      EXPECT_EQ(result.ending.laggard, -1) << name << " " << spec << ": " << result.reason;
     }
   }
 }
